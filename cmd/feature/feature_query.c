@@ -243,7 +243,13 @@ static int write_selection(const struct feature_query *q, const char *path, stru
 
 int feature_query_write(const struct feature_query *q, const char *path, struct err *e)
 {
-	return q->options->pixels ? file_out_put(path, query_put_masks, q, e) : write_selection(q, path, e);
+	struct file_out out;
+
+	if (!q->options->pixels)
+		return write_selection(q, path, e);
+	if (file_out_open(&out, path, e))
+		return -1;
+	return file_out_end(&out, query_put_masks(out.stream, q, e), e);
 }
 
 void feature_query_free(struct feature_query *q)

@@ -98,5 +98,5 @@ int query_read_vectors(struct feature_query *q, struct err *e);
 
 /* The same by vectors for the pixels of rendered features: q->shown. */
 int query_by_pixels(struct feature_query *q, const struct report *to, struct err *e);
-/* Mask records of q (a struct feature_query), view after view. */
-int query_put_masks(FILE *out, const void *q, struct err *e);
+/* Its mask records, view after view. */
+int query_put_masks(FILE *out, const struct feature_query *q, struct err *e);

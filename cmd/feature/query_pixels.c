@@ -279,10 +279,8 @@ int query_by_pixels(struct feature_query *q, const struct report *to, struct err
 	return bad ? -1 : 0;
 }
 
-int query_put_masks(FILE *out, const void *query, struct err *e)
+int query_put_masks(FILE *out, const struct feature_query *q, struct err *e)
 {
-	const struct feature_query *q = query;
-
 	for (size_t v = 0; v < q->view_count; v++)
 		for (size_t i = 0; i < q->count; i++) {
 			struct mask m = q->shown[v * q->count + i];

@@ -60,20 +60,19 @@ int labelling_write(const struct labelling *r, const char *path, struct err *e)
 {
 	const struct lifted *l = &r->model.lifted;
 	struct file_out out;
-	int bad = 0;
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	for (size_t o = 0; o < l->objects && !bad; o++) {
+	for (size_t o = 0; o < l->objects; o++) {
 		const struct extent *x = &r->model.extents[o];
 		const struct box_gaussians of = {x->n, x->ids};
 		struct box_record record = anymodel_box(x, r->scene.offset, l->confidence[o]);
 		record.object = l->names[o];
 		record.label = (int)o + 1;
 		labels_colour(record.label, record.colour);
-		bad = boxes_put(out.stream, &record, &of, e);
+		boxes_put(out.stream, &record, &of);
 	}
-	return file_out_end(&out, bad, e);
+	return file_out_end(&out, 0, e);
 }
 
 void locating_free(struct locating *r)
@@ -148,7 +147,8 @@ static int put(const struct locating *r, size_t i, FILE *out, struct err *e)
 	record.object = (char *)text_object(&q->text, q->refs[i]);
 	record.parts = parts;
 	record.part_count = parts_of(&q->responses, answer);
-	return boxes_put(out, &record, &of, e);
+	boxes_put(out, &record, &of);
+	return 0;
 }
 
 int locating_write(const struct locating *r, const char *path, struct err *e)

@@ -87,14 +87,13 @@ static void text_accuracy(FILE *out, const char *name, double x)
 		fprintf(out, "%-12s %6.2f %%\n", name, 100 * x);
 }
 
-static int put_text(FILE *out, const void *scores, struct err *e)
+static void put_text(FILE *out, const void *scores)
 {
 	const struct answer_scores *s = scores;
 	static const char *const head = "pairs %9s %9s %9s %9s %9s %9s  %s\n";
 	struct answer_score row;
 	double none, some;
 
-	(void)e;
 	answer_target_accuracy(&none, &some, &s->answers);
 	fprintf(out, head, "right", "mIoU", "oIoU", "refused", "F1@0.25", "F1@0.5", "means");
 	for (int i = 0; i < ANSWER_TARGETS; i++) {
@@ -112,7 +111,6 @@ static int put_text(FILE *out, const void *scores, struct err *e)
 	text_accuracy(out, "N-acc", none);
 	text_accuracy(out, "T-acc", some);
 	fprintf(out, "missing      %6zu\nout of sight %6zu\n", row.missing, s->answers.out_of_sight);
-	return 0;
 }
 
 /* The fewest digits that read back as the same number. */
@@ -136,14 +134,13 @@ static void put_row(struct jsontext *to, const struct answer_score *s, const cha
 	jsontext_close(to, '}');
 }
 
-static int put_json(FILE *out, const void *scores, struct err *e)
+static void put_json(FILE *out, const void *scores)
 {
 	const struct answer_scores *s = scores;
 	struct jsontext to = {.out = out};
 	struct answer_score row;
 	double none, some;
 
-	(void)e;
 	jsontext_open(&to, NULL, '{');
 	for (int i = 0; i < ANSWER_TARGETS; i++) {
 		answer_score_sum(&row, &s->answers, (enum answer_targets)i, NULL);
@@ -159,7 +156,6 @@ static int put_json(FILE *out, const void *scores, struct err *e)
 		put_row(&to, &row, *s->kinds[i] ? s->kinds[i] : no_kind);
 	}
 	fputs("}}\n", out);
-	return 0;
 }
 
 int answer_scores_write(const struct answer_scores *s, const char *path, int is_json, struct err *e)

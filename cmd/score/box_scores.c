@@ -105,12 +105,11 @@ static void text_figures(FILE *out, const char *name, const struct box_figures *
 	fprintf(out, "%-12s %6.2f %% %6.2f %% %6.2f %%\n", name, 100 * f->iou, 100 * f->p25, 100 * f->p50);
 }
 
-static int put_text(FILE *out, const void *scores, struct err *e)
+static void put_text(FILE *out, const void *scores)
 {
 	const struct box_scores *s = scores;
 	const struct box_score *all = &s->all;
 
-	(void)e;
 	fprintf(out, "%-12s %8s %8s %8s\n", "boxes", "mIoU", "@0.25", "@0.5");
 	text_figures(out, "aligned", &all->aligned);
 	text_figures(out, "oriented", &all->turned);
@@ -130,7 +129,6 @@ static int put_text(FILE *out, const void *scores, struct err *e)
 		else
 			fprintf(out, "%6.2f %%  %s\n", 100 * one.relative, s->pairs[i].name);
 	}
-	return 0;
 }
 
 /* To six digits. */
@@ -151,12 +149,11 @@ static void put_figures(struct jsontext *to, const char *key, const struct box_f
 	jsontext_close(to, '}');
 }
 
-static int put_json(FILE *out, const void *scores, struct err *e)
+static void put_json(FILE *out, const void *scores)
 {
 	const struct box_scores *s = scores;
 	struct jsontext to = {.out = out};
 
-	(void)e;
 	jsontext_open(&to, NULL, '{');
 	put_figures(&to, "aligned", &s->all.aligned);
 	put_figures(&to, "oriented", &s->all.turned);
@@ -179,7 +176,6 @@ static int put_json(FILE *out, const void *scores, struct err *e)
 		jsontext_close(&to, '}');
 	}
 	fputs("}}\n", out);
-	return 0;
 }
 
 int box_scores_write(const struct box_scores *s, const char *path, int is_json, struct err *e)

@@ -114,8 +114,9 @@ static void text_section(FILE *out, const struct scores *s, const struct section
 		text_row(out, s, &section->table->rows[i]);
 }
 
-static void put_text(FILE *out, const struct scores *s)
+static void put_text(FILE *out, const void *scores)
 {
+	const struct scores *s = scores;
 	const struct score *all = &s->all.score;
 	struct section sections[SECTIONS];
 	const int n = sections_of(sections, s);
@@ -221,8 +222,9 @@ static void put_row(struct jsontext *to, const struct scores *s, const struct sc
 	jsontext_close(to, '}');
 }
 
-static void put_json(FILE *out, const struct scores *s)
+static void put_json(FILE *out, const void *scores)
 {
+	const struct scores *s = scores;
 	const struct score *all = &s->all.score;
 	struct jsontext j = {.out = out}, *to = &j;
 	struct section sections[SECTIONS];
@@ -315,8 +317,9 @@ static void csv_row(FILE *out, const struct scores *s, const char *group, const 
 	fputc('\n', out);
 }
 
-static void put_csv(FILE *out, const struct scores *s)
+static void put_csv(FILE *out, const void *scores)
 {
+	const struct scores *s = scores;
 	struct section sections[SECTIONS];
 	const int n = sections_of(sections, s);
 
@@ -334,10 +337,9 @@ static void put_csv(FILE *out, const struct scores *s)
 
 int scores_write(const struct scores *s, const char *path, enum scores_form form, struct err *e)
 {
-	struct file_out out;
-
-	if (file_out_open(&out, path, e))
-		return -1;
-	(form == SCORES_JSON ? put_json : form == SCORES_CSV ? put_csv : put_text)(out.stream, s);
-	return file_out_end(&out, 0, e);
+	return file_out_put(path,
+		form == SCORES_JSON  ? put_json
+		: form == SCORES_CSV ? put_csv
+				     : put_text,
+		s, e);
 }

@@ -37,9 +37,9 @@ int synth_folder_end(struct synth_folder *f, struct err *e);
 /* Removes outputs that are still open. */
 void synth_folder_abort(struct synth_folder *f);
 
-/* The unseen split, of a struct synth_folder: unseen.jsonl, and parses.unseen.jsonl. Return 0. */
-int synth_unseen_put(FILE *out, const void *folder, struct err *e);
-int synth_unseen_put_parses(FILE *out, const void *folder, struct err *e);
+/* The unseen split, of a struct synth_folder: unseen.jsonl, and parses.unseen.jsonl. */
+void synth_unseen_put(FILE *out, const void *folder);
+void synth_unseen_put_parses(FILE *out, const void *folder);
 
 struct benchmark {
 	struct synth_options options; /* the caller's, but for the seed */

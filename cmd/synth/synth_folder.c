@@ -18,7 +18,7 @@ static int open_in(struct file_out *out, const char *dir, const char *name, stru
 }
 
 static int put_file(const struct synth_folder *f, const char *name,
-	int (*put)(FILE *out, const void *folder, struct err *e), struct err *e)
+	void (*put)(FILE *out, const void *folder), struct err *e)
 {
 	SCOPED char *path = file_join(f->dir, name, "", e);
 
@@ -56,48 +56,42 @@ static int write_model(const struct synth_folder *f, struct err *e)
 
 /* Texts, names and refs are made of letters, digits, commas, hyphens and spaces: JSON needs no escapes for
  * them. */
-static int put_sentences(FILE *out, const void *folder, struct err *e)
+static void put_sentences(FILE *out, const void *folder)
 {
 	const struct synth_folder *f = folder;
 
-	(void)e;
 	for (size_t i = 0; i < f->sentences->n; i++) {
 		const struct synth_sentence *s = &f->sentences->items[i];
 		fprintf(out, "{\"ref\":\"%s\",\"object\":\"%s\",\"text\":\"%s\",\"split\":\"%s\"}\n", s->ref,
 			f->scene->objects[s->object].name, s->text,
 			s->split == SPLIT_TEST ? "test" : "train");
 	}
-	return 0;
 }
 
-static int put_boxes(FILE *out, const void *folder, struct err *e)
+static void put_boxes(FILE *out, const void *folder)
 {
 	const struct synth_folder *f = folder;
-	int bad = 0;
 
-	for (int i = 0; i < f->scene->object_count && !bad; i++) {
+	for (int i = 0; i < f->scene->object_count; i++) {
 		struct synth_object *o = &f->scene->objects[i];
 		struct box_record r = {.object = o->name, .score = NAN};
 		synth_object_boxes(o, &r.aligned, &r.turned);
-		bad = boxes_put(out, &r, NULL, e);
+		boxes_put(out, &r, NULL);
 	}
-	return bad;
 }
 
 /* One line, as --test-views takes it. */
-static int put_test_views(FILE *out, const void *folder, struct err *e)
+static void put_test_views(FILE *out, const void *folder)
 {
 	const struct cameras *c = &((const struct synth_folder *)folder)->scene->cameras;
 	const char *comma = "";
 
-	(void)e;
 	for (size_t i = 0; i < c->n; i++)
 		if (c->views[i].split == SPLIT_TEST) {
 			fprintf(out, "%s%s", comma, c->views[i].name);
 			comma = ",";
 		}
 	fputc('\n', out);
-	return 0;
 }
 
 int synth_folder_begin(struct synth_folder *f, struct err *e)
@@ -206,13 +200,12 @@ static void put_visibility(FILE *to, const char *name, const struct synth_visibi
 	fputc('}', to);
 }
 
-static int put_statistics(FILE *out, const void *folder, struct err *e)
+static void put_statistics(FILE *out, const void *folder)
 {
 	const struct synth_folder *f = folder;
 	const struct synth_statistics *s = f->statistics;
 	const char *comma = "";
 
-	(void)e;
 	fprintf(out,
 		"{\"scene\":\"%s\",\"objects\":%d,\"alike\":%d,\"alike_groups\":%d,\"stacked\":%d,"
 		"\"sentences\":{\"train\":%d,\"test\":%d},\"words\":{\"train\":%.2f,\"test\":%.2f},"
@@ -238,7 +231,6 @@ static int put_statistics(FILE *out, const void *folder, struct err *e)
 	fputc(',', out);
 	put_visibility(out, "test", &s->visibility[SPLIT_TEST]);
 	fputs("}}\n", out);
-	return 0;
 }
 
 int synth_folder_end(struct synth_folder *f, struct err *e)

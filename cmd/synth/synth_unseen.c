@@ -155,22 +155,18 @@ static void put_sentence(FILE *to, const struct synth_sentence *x, const struct 
 	fputs("}\n", to);
 }
 
-int synth_unseen_put(FILE *out, const void *folder, struct err *e)
+void synth_unseen_put(FILE *out, const void *folder)
 {
 	const struct synth_folder *f = folder;
 
-	(void)e;
 	for (size_t i = 0; i < f->unseen->n; i++)
 		put_sentence(out, &f->unseen->items[i], f->scene->objects, &f->scene->cameras);
-	return 0;
 }
 
-int synth_unseen_put_parses(FILE *out, const void *folder, struct err *e)
+void synth_unseen_put_parses(FILE *out, const void *folder)
 {
 	const struct synth_folder *f = folder;
 
-	(void)e;
 	for (size_t i = 0; i < f->unseen->n; i++)
 		put_parse(out, &f->unseen->items[i]);
-	return 0;
 }

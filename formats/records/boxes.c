@@ -170,7 +170,7 @@ static void put_parts(FILE *out, const struct box_record *r)
 	}
 }
 
-int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of, struct err *e)
+void boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of)
 {
 	if (r->ref)
 		jsonl_put_string(out, "{\"ref\":", r->ref);
@@ -192,5 +192,4 @@ int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians 
 		fputc(']', out);
 	}
 	fputs("}\n", out);
-	return ferror(out) ? err_errno(e, "write") : 0;
 }

@@ -41,4 +41,4 @@ struct box_gaussians {
 
 /* One line. `of` may be NULL: the record then says nothing of Gaussians. Its parts have an object, a score
  * and boxes. */
-int boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of, struct err *e);
+void boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians *of);

@@ -272,18 +272,16 @@ static void put_view(FILE *out, const struct camera *c)
 	fputs("}", out);
 }
 
-static int put_cameras(FILE *out, const void *cameras, struct err *e)
+static void put_cameras(FILE *out, const void *cameras)
 {
 	const struct cameras *c = cameras;
 
-	(void)e;
 	fputs("[", out);
 	for (size_t i = 0; i < c->n; i++) {
 		fputs(i ? ",\n " : "\n ", out);
 		put_view(out, &c->views[i]);
 	}
 	fputs("\n]\n", out);
-	return 0;
 }
 
 static int write_splats(const struct scene *s, const char *path, const char *options, struct err *e)

@@ -297,14 +297,14 @@ int file_out_end(struct file_out *out, int bad, struct err *e)
 	return -1;
 }
 
-int file_out_put(const char *path, int (*put)(FILE *out, const void *what, struct err *e), const void *what,
-	struct err *e)
+int file_out_put(const char *path, void (*put)(FILE *out, const void *what), const void *what, struct err *e)
 {
 	struct file_out out;
 
 	if (file_out_open(&out, path, e))
 		return -1;
-	return file_out_end(&out, put(out.stream, what, e), e);
+	put(out.stream, what);
+	return file_out_end(&out, 0, e);
 }
 
 /* A pipe that is opened and closed again would end for its reader. */

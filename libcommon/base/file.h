@@ -51,9 +51,8 @@ void file_out_abort(struct file_out *out);		  /* harmless after commit, and on a
  * or -1 with *e set. */
 int file_out_end(struct file_out *out, int bad, struct err *e);
 
-/* Opens, writes by `put`, which returns 0 or -1 with *e, and ends. */
-int file_out_put(const char *path, int (*put)(FILE *out, const void *what, struct err *e), const void *what,
-	struct err *e);
+/* Opens, writes by `put`, in which nothing but the device can fail, and ends. */
+int file_out_put(const char *path, void (*put)(FILE *out, const void *what), const void *what, struct err *e);
 
 /* Removes the temporary files of all outputs that are open: for a signal's handler, after which the process
  * ends. Threads that then open or end an output wait for that. */
