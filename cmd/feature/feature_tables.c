@@ -102,9 +102,7 @@ int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *c
 
 	if (m->kind != MAPS_CELLS && m->kind != MAPS_SEGMENTS)
 		return 0;
-	if (open_table(m, view, &t, channels, e))
-		return -1;
-	return 0;
+	return open_table(m, view, &t, channels, e) ? -1 : 0;
 }
 
 /* The segments' numbers at a view's pixels, of one level of (L,H,W), or of (H,W). */

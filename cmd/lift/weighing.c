@@ -48,14 +48,9 @@ static int prepare(struct room *room, const struct splats *s, const struct camer
 	return room->view ? 0 : -1;
 }
 
-static double least_weight(const struct weighing_options *o)
-{
-	return o->precision == PRECISION_U8 ? WEIGHTS_U8_LEAST : 0;
-}
-
 static int render(struct room *room, size_t pixels, const struct weighing_options *o, struct err *e)
 {
-	const double least = least_weight(o);
+	const double least = o->precision == PRECISION_U8 ? WEIGHTS_U8_LEAST : 0;
 
 	if (render_weights_again(room->view, &room->rendered, e))
 		return -1;

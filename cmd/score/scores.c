@@ -37,17 +37,12 @@ static int sections_of(struct section sections[SECTIONS], const struct scores *s
 
 /* Text */
 
-static void text_interval(FILE *out, const struct interval *i)
-{
-	fprintf(out, "  [%.1f, %.1f]", 100 * i->low, 100 * i->high);
-}
-
 static void text_figure(
 	FILE *out, const char *name, double value, const struct interval *i, const struct score_row *row)
 {
 	fprintf(out, "%-12s %6.2f %%", name, 100 * value);
 	if (row->unit)
-		text_interval(out, i);
+		fprintf(out, "  [%.1f, %.1f]", 100 * i->low, 100 * i->high);
 	fputc('\n', out);
 }
 

@@ -16,8 +16,7 @@ char *cache_folder(const char *name, struct err *e)
 	}
 	SCOPED char *dir = has_cache ? file_join(cache, "refersplat", "", e)
 				     : file_join(home, ".cache/refersplat", "", e);
-	char *path = dir ? file_join(dir, name, "", e) : NULL;
-	return path;
+	return dir ? file_join(dir, name, "", e) : NULL;
 }
 
 char *encoder_default(struct err *e)

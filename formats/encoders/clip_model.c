@@ -58,9 +58,7 @@ int clip_model_is(const char *dir)
 	struct err e = {0};
 	int is_open;
 	SCOPED char *path = find_config(dir, &is_open, &e);
-	const int is = path != NULL;
-
-	return is;
+	return path != NULL;
 }
 
 /* What a configuration says beside the sizes. */

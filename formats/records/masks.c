@@ -202,9 +202,7 @@ int masks_read_lines(struct masks *set, long **lines, const char *path, struct e
 int masks_read(struct masks *set, const char *path, struct err *e)
 {
 	SCOPED long *lines = NULL;
-	int bad = masks_read_lines(set, &lines, path, e);
-
-	return bad;
+	return masks_read_lines(set, &lines, path, e);
 }
 
 int masks_pool(struct pool *p, const struct masks *set, const long *lines, const char *path, struct err *e)

@@ -214,9 +214,7 @@ int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 static int read_cameras(struct cameras *c, const char *dir, struct err *e)
 {
 	SCOPED char *path = file_join(dir, "cameras.json", "", e);
-	int bad = path ? scene_read_cameras_file(c, path, e) : -1;
-
-	return bad;
+	return path ? scene_read_cameras_file(c, path, e) : -1;
 }
 
 int scene_read(struct scene *s, const char *dir, struct err *e)

@@ -223,15 +223,6 @@ int weights_open(struct weights *w, const char *dir, const struct scene *scene, 
 	return weights_open_in(w, NULL, WEIGHTS_ROWS, dir, scene, view, e);
 }
 
-/* 1 where DIR/VIEW.safetensors is there, 0 where it is not, -1 with *e. */
-static int is_there(const char *dir, const char *view, struct err *e)
-{
-	SCOPED char *path = file_join(dir, view, ".safetensors", e);
-	int found = path ? file_exists(path) : -1;
-
-	return found;
-}
-
 void weights_close(struct weights *w)
 {
 	safetensors_close(&w->file);
@@ -265,11 +256,11 @@ int weights_mark(const char *dir, const struct cameras *cameras, char *there, si
 		if (cameras->views[v].split != SPLIT_TRAIN)
 			continue;
 		training++;
-		int found = is_there(dir, cameras->views[v].name, e);
-		if (found < 0)
+		SCOPED char *path = file_join(dir, cameras->views[v].name, ".safetensors", e);
+		if (!path)
 			return -1;
-		there[v] = (char)found;
-		*missing += !found;
+		there[v] = (char)file_exists(path);
+		*missing += !there[v];
 	}
 	/* Where none has, the folder is another one than was meant. */
 	return training && *missing == training

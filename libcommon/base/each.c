@@ -11,11 +11,6 @@ int each_workers(size_t n)
 	return n < (size_t)fit ? (n ? (int)n : 1) : fit;
 }
 
-static int finish(const struct each *by, size_t item, struct err *e)
-{
-	return by->done ? by->done(by->context, item, e) : 0;
-}
-
 int each_run(const struct each *by, size_t n, struct err *e)
 {
 	const int threads = threads_available(), levels = omp_get_max_active_levels();
@@ -36,7 +31,7 @@ int each_run(const struct each *by, size_t n, struct err *e)
 			end = failed;
 			const int bad = i < end && by->work(by->context, omp_get_thread_num(), i, &own);
 #pragma omp ordered
-			if (failed == n && (bad || finish(by, i, &own))) {
+			if (failed == n && (bad || (by->done && by->done(by->context, i, &own)))) {
 				*e = own;
 #pragma omp critical(each_failed)
 				failed = i;

@@ -321,9 +321,7 @@ int file_out_probe(const char *path, struct err *e)
 
 	if (is_no_file(path))
 		return 0;
-	if (file_out_open(&out, path, e))
-		return -1;
-	return 0;
+	return file_out_open(&out, path, e) ? -1 : 0;
 }
 
 int file_out_claim(struct file_out *out, const char *path, struct err *e)

@@ -106,11 +106,6 @@ static int is_within(const struct cli *c, const char *file, const struct cli_fil
 	       (file_exists(file) && (is_below(c, target, folder) || is_listed(c, file, folder)));
 }
 
-static int is_stdin(const struct cli_file *f)
-{
-	return f->use == CLI_READS && !strcmp(f->path, "-");
-}
-
 static int do_clash(const struct cli *c, const struct cli_file *a, const struct cli_file *b)
 {
 	if (a->use == b->use && !strcmp(a->path, "-") && !strcmp(b->path, "-"))
@@ -127,8 +122,8 @@ static void refuse(const struct cli *c, const struct cli_file *a, const struct c
 	const struct cli_file *out = a->use == CLI_WRITES ? a : b, *other = out == a ? b : a;
 
 	if (a->use == b->use && !strcmp(a->path, "-") && !strcmp(b->path, "-"))
-		cli_usage(
-			c, "%s and %s cannot both be %s", a->name, b->name, is_stdin(a) ? "stdin" : "stdout");
+		cli_usage(c, "%s and %s cannot both be %s", a->name, b->name,
+			a->use == CLI_READS ? "stdin" : "stdout");
 	if (other->use == CLI_WRITES && !out->parts == !other->parts)
 		cli_usage(c, "%s %s and %s %s are the same", out->name, out->path, other->name, other->path);
 	if (other->parts && !out->parts)
