@@ -155,6 +155,33 @@ breaks() {
 	not grep -nE '[Cc]ommit [0-9a-f]{7}' "${pages[@]}" man/*
 }
 
+@test "what a header declares is used beyond the file that makes it" {
+	find cmd formats libcommon tests -name '*.[ch]' | xargs awk -v but=libcommon/places '
+		FNR == 1 { file++ }
+		FILENAME ~ /\.h$/ && FILENAME !~ /^tests/ && index(FILENAME, but) != 1 &&
+			!/^(static|typedef)/ && match($0, /^[a-z][a-z0-9_ *]*[ *][a-z0-9_]+\(/) {
+			name = substr($0, 1, RLENGTH - 1)
+			sub(/.*[ *]/, "", name)
+			header[name] = FILENAME
+		}
+		{
+			gsub(/[^A-Za-z0-9_]+/, " ")
+			for (i = 1; i <= NF; i++) {
+				files[$i] += last[$i] != file
+				own[FILENAME, $i]++
+				last[$i] = file
+			}
+		}
+		END {
+			for (name in header)
+				if (files[name] < 3 && own[header[name], name] < 2) {
+					print header[name] ": " name
+					bad = 1
+				}
+			exit bad
+		}'
+}
+
 @test "no loose ends" {
 	none 'TODO|FIXME|HACK' cmd formats libcommon tests
 	not grep -nE 'TODO|FIXME|HACK' Makefile pipelines/* man/*

@@ -7,7 +7,7 @@
 
 #include <omp.h>
 
-const struct back_kernels *back_kernels_of(enum cpu_level level)
+static const struct back_kernels *back_kernels_of(enum cpu_level level)
 {
 #if defined __x86_64__
 	if (level == CPU_AVX512)

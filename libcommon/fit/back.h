@@ -47,7 +47,6 @@ struct back_kernels {
 	size_t (*tile)(struct blend_tile *t, struct back_tile *b, struct back_sums *sums,
 		const struct projected *p, const uint32_t *list, size_t n, const float *colors, float *out);
 };
-const struct back_kernels *back_kernels_of(enum cpu_level level);
 extern const struct back_kernels back_plain, back_avx2, back_avx512;
 
 /* Room that is kept from view to view. Zeroed is empty. */
