@@ -8,7 +8,7 @@
 #include <assert.h>
 #include <dirent.h>
 
-enum { MOST = 16, NAME_ROOM = 32 }; /* files of a tool; letters of an option */
+enum { MOST = 16, NAME_ROOM = 32 }; /* files of a tool's options; letters of an option */
 
 static _Noreturn void fail(const struct cli *c, const struct err *e)
 {
@@ -167,12 +167,17 @@ static struct cli_file from_word(const struct cli *c, char *word, char *shown, e
 void cli_refuse_overwrite(
 	const struct cli *c, const char *reads, const char *writes, const struct cli_file *more)
 {
-	struct cli_file files[MOST];
 	char text[1024], shown[MOST][NAME_ROOM], *rest;
 	const int length = snprintf(text, sizeof text, "%s > %s", writes, reads);
 	enum cli_use use = CLI_WRITES;
-	size_t n = 0;
+	size_t n = 0, count = 0;
+	struct err e;
 
+	while (more && more[count].name)
+		count++;
+	SCOPED struct cli_file *files = mem_alloc(MOST + count, sizeof *files, "files", &e);
+	if (!files)
+		fail(c, &e);
 	assert(length < (int)sizeof text);
 	for (char *word = strtok_r(text, " ", &rest); word; word = strtok_r(NULL, " ", &rest)) {
 		assert(n < MOST);
@@ -183,9 +188,7 @@ void cli_refuse_overwrite(
 		files[n] = from_word(c, word, shown[n], use);
 		n++;
 	}
-	for (; more && more->name; more++) {
-		assert(n < MOST);
-		files[n++] = *more;
-	}
+	for (size_t i = 0; i < count; i++)
+		files[n++] = more[i];
 	check_pairs(c, files, n);
 }
