@@ -64,8 +64,8 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 	int is_sentence = cJSON_HasObjectItem(first, "text"),
 	    is_frames = cJSON_HasObjectItem(first, "frames");
 	int is_mask = cJSON_HasObjectItem(first, "segmentation") || cJSON_HasObjectItem(first, "path");
-	int is_box = cJSON_HasObjectItem(first, "oriented");
-	if (got == 1 && !is_sentence && !is_mask && !is_frames && !is_box)
+	int is_box = cJSON_HasObjectItem(first, "oriented"), is_detection = cJSON_HasObjectItem(first, "box");
+	if (got == 1 && !is_sentence && !is_mask && !is_frames && !is_box && !is_detection)
 		got = jsonl_err(
 			&j, e, "neither a sentence (key 'text') nor a mask (key 'segmentation' or 'path')");
 	else if (got < 0 && e->code == ERR_FORMAT && !start_again(path, &ignored))
@@ -77,6 +77,8 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 		return check_cameras(c, path, "nerfstudio cameras", e);
 	if (is_box && !is_sentence && !is_mask)
 		return check_boxes(c, path, e);
+	if (is_detection && !is_sentence && !is_mask)
+		return check_detections(c, path, e);
 	return is_sentence ? check_sentences(c, path, e) : check_masks(c, path, e);
 }
 

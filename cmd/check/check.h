@@ -44,6 +44,7 @@ void check_add(struct check *c, const char *name, long long value);
 int check_sentences(struct check *c, const char *path, struct err *e);
 int check_masks(struct check *c, const char *path, struct err *e);
 int check_boxes(struct check *c, const char *path, struct err *e);
+int check_detections(struct check *c, const char *path, struct err *e);
 
 /* What cmd/check/check.h says of files of arrays and of cameras: each reads a whole file with its format's
  * reader, and adds what it counted. Return 0, or -1 with *e. */

@@ -5,6 +5,7 @@
 #include "base/names.h"
 #include "formats/cameras/colmap.h"
 #include "formats/records/boxes.h"
+#include "formats/records/detections.h"
 #include "formats/records/masks.h"
 #include "formats/records/sentences.h"
 #include "formats/scene/weights.h"
@@ -99,6 +100,22 @@ int check_boxes(struct check *c, const char *path, struct err *e)
 		offsetof(struct box_record, object), set.n, e);
 	check_add(c, "empty", (long long)empty);
 	return bad ? -1 : 0;
+}
+
+int check_detections(struct check *c, const char *path, struct err *e)
+{
+	SCOPED_BY(detections_free) struct detections d = {0};
+	const size_t stride = sizeof *d.items;
+
+	if (detections_read(&d, path, e))
+		return -1;
+	c->kind = "detections";
+	check_add(c, "boxes", (long long)d.n);
+	return add_names(c, "views", d.items, stride, offsetof(struct detection, view), d.n, e) ||
+			       add_names(c, "classes", d.items, stride, offsetof(struct detection, name), d.n,
+				       e)
+		       ? -1
+		       : 0;
 }
 
 static int check_scene(struct check *c, const char *path, struct err *e)

@@ -17,6 +17,10 @@
  * (ERR_USAGE: HOME is not set). */
 char *cache_folder(const char *name, struct err *e);
 
+/* The same of the "encoder" or the "detector", which `make encoder` and `make detector` put there: an error
+ * (ERR_SYSTEM) where it is not there. */
+char *cached_model(const char *what, struct err *e);
+
 /* A language encoder, of one of two kinds: a BERT or CLIP's text tower, with its vocabulary. */
 
 /* What is read of an encoder's folder. */

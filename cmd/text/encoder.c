@@ -19,16 +19,21 @@ char *cache_folder(const char *name, struct err *e)
 	return dir ? file_join(dir, name, "", e) : NULL;
 }
 
-char *encoder_default(struct err *e)
+char *cached_model(const char *what, struct err *e)
 {
-	char *dir = cache_folder("encoder", e);
+	char *dir = cache_folder(what, e);
 
 	if (!dir || file_is_dir(dir))
 		return dir;
-	err_set(e, ERR_SYSTEM,
-		"%s: no encoder there: 'refersplat-encoder' fetches one, in a checkout 'make encoder'", dir);
+	err_set(e, ERR_SYSTEM, "%s: no %s there: 'refersplat-%s' fetches one, in a checkout 'make %s'", dir,
+		what, what, what);
 	free(dir);
 	return NULL;
+}
+
+char *encoder_default(struct err *e)
+{
+	return cached_model("encoder", e);
 }
 
 /* Ids index the embedding, so none may lie past it. */

@@ -1,6 +1,5 @@
 /* The weights of the detector of box-detect, in a folder. formats/encoders/nanodet_model.md. */
-#ifndef FORMATS_NANODET_MODEL_H
-#define FORMATS_NANODET_MODEL_H
+#pragma once
 
 #include "base/err.h"
 #include "nn/nanodet.h"
@@ -10,5 +9,3 @@
 
 /* Returns 0 and *n (nanodet_free), or -1 with *e, and then there is nothing to free. */
 int nanodet_model_read(struct nanodet *n, const char *dir, struct err *e);
-
-#endif

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/jsontext.h"
 #include "base/mem.h"
+#include "base/number.h"
 #include "base/textfile.h"
 #include "formats/records/foreign.h"
 #include "formats/records/json.h"
@@ -230,4 +231,16 @@ void jsonl_put_string(FILE *out, const char *before, const char *text)
 {
 	fputs(before, out);
 	jsontext_quote(out, text);
+}
+
+void jsonl_put_numbers(FILE *out, const char *before, const double *x, int n)
+{
+	char text[NUMBER_SIZE];
+
+	for (int i = 0; i < n; i++)
+		if (x[i] == floor(x[i]) && fabs(x[i]) < 1e9)
+			fprintf(out, "%s%.0f", i ? "," : before, x[i] + 0.0);
+		else
+			fprintf(out, "%s%s", i ? "," : before, number_text(text, x[i]));
+	fputc(']', out);
 }

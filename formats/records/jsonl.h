@@ -57,3 +57,7 @@ int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, do
 
 /* Writes `before`, then the text as a JSON string. */
 void jsonl_put_string(FILE *out, const char *before, const char *text);
+
+/* Writes `before`, n numbers with the fewest digits, whole ones without an exponent, as pixels are counted,
+ * and "]". */
+void jsonl_put_numbers(FILE *out, const char *before, const double *x, int n);

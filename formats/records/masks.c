@@ -329,23 +329,12 @@ static void put_number(FILE *out, const char *before, double x)
 	fprintf(out, "%s%s", before, number_text(text, x));
 }
 
-/* Whole numbers without an exponent, as pixels are counted. */
-static void put_numbers(FILE *out, const char *before, const double *x, int n)
-{
-	for (int i = 0; i < n; i++)
-		if (x[i] == floor(x[i]) && fabs(x[i]) < 1e9)
-			fprintf(out, "%s%.0f", i ? "," : before, x[i] + 0.0);
-		else
-			put_number(out, i ? "," : before, x[i]);
-	fputc(']', out);
-}
-
 static void put_place(FILE *out, const struct mask_place *p)
 {
 	if (p->has_peak)
-		put_numbers(out, ",\"peak\":[", p->peak, 2);
+		jsonl_put_numbers(out, ",\"peak\":[", p->peak, 2);
 	for (size_t i = 0; i < p->box_count; i++)
-		put_numbers(out, i ? ",[" : ",\"boxes\":[[", p->boxes[i], 4);
+		jsonl_put_numbers(out, i ? ",[" : ",\"boxes\":[[", p->boxes[i], 4);
 	if (p->box_count)
 		fputc(']', out);
 }

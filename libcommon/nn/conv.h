@@ -4,8 +4,7 @@
  *
  * A convolution is a product of matrices (nn/linear.h): a row for each pixel of the result, of what is under
  * the kernel there. So its bytes do not depend on the number of threads. Kernels: they cannot fail. */
-#ifndef NN_CONV_H
-#define NN_CONV_H
+#pragma once
 
 #include <stddef.h>
 
@@ -42,5 +41,3 @@ void conv_largest(struct conv_image out, struct conv_image in);
 
 /* out += in at the size of out, linear between the centres of pixels. */
 void conv_add_resized(struct conv_image out, struct conv_image in);
-
-#endif

@@ -16,7 +16,7 @@ static struct conv *size(struct conv *c, size_t side, size_t step, size_t in, si
 	return c + 1;
 }
 
-void nanodet_sizes(struct nanodet *n)
+static void set_sizes(struct nanodet *n)
 {
 	struct conv *c = size(n->convs, 3, 2, 3, widths[0]);
 	size_t in = widths[0];
@@ -37,7 +37,6 @@ void nanodet_sizes(struct nanodet *n)
 		c = size(c, 3, 1, WIDTH, WIDTH);
 		c = size(c, 1, 1, WIDTH, NANODET_OUT);
 	}
-	n->slab = NULL;
 }
 
 static void lay_out(void *of, struct slab *s)
@@ -53,7 +52,7 @@ static void lay_out(void *of, struct slab *s)
 
 int nanodet_alloc(struct nanodet *n, struct err *e)
 {
-	nanodet_sizes(n);
+	set_sizes(n);
 	n->slab = slab_alloc(lay_out, n, "detector", e);
 	return n->slab ? 0 : -1;
 }

@@ -11,13 +11,11 @@
  * (PANet), and two more convolutions give each cell of 52 x 52, 26 x 26 and 13 x 13 a number for each class,
  * whose logistic function is the score, and for each of a box's four sides the distance from the cell's
  * middle, as a softmax over 0 to 10 strides (generalised focal loss). */
-#ifndef NN_NANODET_H
-#define NN_NANODET_H
+#pragma once
 
 #include "base/err.h"
 #include "nn/conv.h"
 
-#include <stddef.h>
 #include <stdint.h>
 
 enum {
@@ -35,8 +33,7 @@ struct nanodet {
 	float *slab;
 };
 
-/* The sizes of all convolutions, without their weights; and memory for these, not initialised. */
-void nanodet_sizes(struct nanodet *n);
+/* Sets the sizes of all convolutions, and allocates their weights, not initialised. 0, or -1 with *e. */
 int nanodet_alloc(struct nanodet *n, struct err *e);
 void nanodet_free(struct nanodet *n);
 
@@ -77,7 +74,5 @@ int nanodet_add(struct nanodet_boxes *to, const float *out, const struct nanodet
  * over union above `most`. */
 void nanodet_thin(struct nanodet_boxes *boxes, double most);
 
-/* The name of a class: "person". */
-const char *nanodet_class(int label);
-
-#endif
+/* The names of the classes: "person", ... */
+extern const char *const nanodet_classes[NANODET_CLASSES];

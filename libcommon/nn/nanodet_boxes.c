@@ -5,7 +5,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
 
 /* What each place of a line of the network's picture is of a line of `from` places: a tent as wide as two of
  * its own places, or two of the picture's where these are wider. weights (416,room). */
@@ -80,8 +79,7 @@ int nanodet_picture(
 #pragma omp parallel for schedule(static)
 	for (size_t y = 0; y < (bad ? 0 : NANODET_SIDE); y++)
 		fit_column(in + y * fitted, rows, &down, y);
-	free(across.weights);
-	free(down.weights);
+	mem_free_all(across.weights, down.weights);
 	return bad ? -1 : 0;
 }
 
@@ -192,7 +190,7 @@ void nanodet_thin(struct nanodet_boxes *boxes, double most)
 	boxes->n = kept;
 }
 
-static const char *const classes[NANODET_CLASSES] = {"person", "bicycle", "car", "motorcycle", "airplane",
+const char *const nanodet_classes[NANODET_CLASSES] = {"person", "bicycle", "car", "motorcycle", "airplane",
 	"bus", "train", "truck", "boat", "traffic light", "fire hydrant", "stop sign", "parking meter",
 	"bench", "bird", "cat", "dog", "horse", "sheep", "cow", "elephant", "bear", "zebra", "giraffe",
 	"backpack", "umbrella", "handbag", "tie", "suitcase", "frisbee", "skis", "snowboard", "sports ball",
@@ -202,8 +200,3 @@ static const char *const classes[NANODET_CLASSES] = {"person", "bicycle", "car",
 	"dining table", "toilet", "tv", "laptop", "mouse", "remote", "keyboard", "cell phone", "microwave",
 	"oven", "toaster", "sink", "refrigerator", "book", "clock", "vase", "scissors", "teddy bear",
 	"hair drier", "toothbrush"};
-
-const char *nanodet_class(int label)
-{
-	return classes[label];
-}

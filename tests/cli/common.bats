@@ -26,6 +26,7 @@ missing_input() {
 		parse-train --text none -o out none
 		pseudomask-select -o out none
 		mask-import --names none -o out none
+		box-detect --model none -o out none
 		mask-export -o out none
 		refer-train --scene none --weights none --text none --masks none -o out
 		refer-lift --scene none --weights none --text none --masks none -o out

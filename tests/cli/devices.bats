@@ -37,6 +37,7 @@ commands() {
 		pseudomask-select -o out candidates.jsonl
 		mask-import -o out labels.json
 		mask-export -o out truth.jsonl
+		box-detect --quiet --model detector -o out images/view_001.png
 		refer-lift --scene scene --weights weights --text text.safetensors --masks masks.jsonl -o out
 		refer-train --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 5 -o out
 		refer-train --scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 5 --memory 0 -o out

@@ -2,7 +2,7 @@
 # Makes the folder in which the EXAMPLES of the manual pages run. usage: examples-setup.sh DIR BIN
 # It holds a small synthetic scene (formats/scene/synth.md) and what each tool makes of it, under the names that the manual pages
 # use: scene, weights, text.safetensors, masks.jsonl, model.safetensors, pred.jsonl, whole.jsonl; kitchen, laid out as
-# pipelines/lift.mk does; view_001.png, a painted photograph; new-camera.json, a camera of its own; labels.json; encoder, a tiny BERT, clip, a tiny CLIP, clip-features.safetensors, features of its width, and cache, which has it where `make encoder` would put one.
+# pipelines/lift.mk does; view_001.png, a painted photograph; new-camera.json, a camera of its own; labels.json; encoder, a tiny BERT, clip, a tiny CLIP, detector, weights that find the same in every picture, clip-features.safetensors, features of its width, and cache, which has encoder and detector where `make` would put them.
 set -eu
 mkdir -p "$1"
 golden=$(cd "$(dirname "$0")/../golden" && pwd)
@@ -11,6 +11,7 @@ cd "$1"
 
 cp -r "$golden/bert" encoder
 cp -r "$golden/clip" clip
+"$golden/../cli/detector.sh" detector
 gs-synth -q --objects 3 --views 5 --size 64x48 --gaussians 1000 -o .
 gs-import -q --images images --test-views "$(cat test-views)" -o scene point_cloud.ply
 gs-weigh -q -o weights scene
@@ -24,7 +25,7 @@ refer-train -q --scene scene --weights weights --text text.safetensors --masks m
 mkdir -p kitchen/lifted cache/refersplat
 cp -r scene kitchen/scene
 cp text.safetensors kitchen/text.safetensors
-cp -r encoder cache/refersplat/encoder
+cp -r encoder detector cache/refersplat
 refer-lift -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl -o kitchen/lifted/model.safetensors
 # A painted photograph: the first sentence's object, white on black.
 refer-render -q --scene scene --text text.safetensors --model kitchen/lifted/model.safetensors --split all \

@@ -4,40 +4,11 @@
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	load ../format/files
+	load pictures
 	cd "$BATS_TEST_TMPDIR"
 	# 4 wide, 3 high: red at the left, blue in the middle, black and a pixel of white
 	picture view_1.png 'ff0000 0000ff 0000ff 000000' 'ff0000 0000ff 0000ff 000000' 'ff0000 ff0000 000000 ffffff'
 	printf '#ff0000 red cup\n#0000FF\t kettle \n\n' >names
-}
-
-# number N: four bytes, the highest first, in hexadecimal.
-number() { printf '%08x' "$1"; }
-
-# chunk TYPE HEX: a chunk of a PNG, in hexadecimal.
-chunk() {
-	local body
-	body=$(printf %s "$1" | xxd -p)$2
-	printf '%s%s%s' "$(number $((${#2} / 2)))" "$body" "$(printf %s "$body" | xxd -r -p | gzip -c | tail -c 8 | head -c 4 | xxd -p | fold -w2 | tac | tr -d '\n')"
-}
-
-# picture FILE ROW...: a colour PNG; a row is its pixels, rrggbb. The data are one stored block of deflate. Other kinds by
-# kind=BBCC, bits and colour type: 1000 are greys of 16 bits, 0806 rrggbbaa.
-picture() {
-	local file=$1 row data='' sum_a=1 sum_b=0 byte n kind=${kind:-0802}
-	local -A digits=([0802]=6 [0806]=8 [1000]=4)
-	shift
-	for row; do data+=00${row// /}; done
-	for byte in $(fold -w2 <<<"$data"); do
-		sum_a=$(((sum_a + 16#$byte) % 65521)) sum_b=$(((sum_b + sum_a) % 65521))
-	done
-	n=$(printf '%04x' $((${#data} / 2)))
-	{
-		printf 89504e470d0a1a0a
-		row=${1// /}
-		chunk IHDR "$(number $((${#row} / ${digits[$kind]})))$(number $#)${kind}000000"
-		chunk IDAT "780101${n:2}${n:0:2}$(printf '%04x' $((16#${n:2}${n:0:2} ^ 65535)))$data$(printf '%04x%04x' $sum_b $sum_a)"
-		chunk IEND ''
-	} | xxd -r -p >"$file"
 }
 
 @test "a mask for each colour that has a name, with the view's name" {

@@ -99,7 +99,7 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 	refuses "-o pred.jsonl would overwrite PREDICTIONS pred.jsonl" miou-score --truth truth.jsonl -o pred.jsonl pred.jsonl
 }
 
-@test "text-parse, parse-train, refer-ask, mask-import, mask-export, gs-transform, feature-lift, feature-query, refer-report" {
+@test "text-parse, parse-train, refer-ask, mask-import, box-detect, mask-export, gs-transform, feature-lift, feature-query, refer-report" {
 	refuses "-o text.safetensors would overwrite TEXT text.safetensors" text-parse -o text.safetensors text.safetensors
 	refuses "-o encoder/vocab.txt would overwrite --parser encoder/vocab.txt" text-parse --parser encoder/vocab.txt \
 		-o encoder/vocab.txt text.safetensors
@@ -111,6 +111,11 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 		refuses "--picture kitchen/$file would be among the files of RUN kitchen" refer-ask --encoder encoder -o kitchen/$file kitchen box
 	done
 	refuses "-o labels.json would overwrite picture labels.json" mask-import -o labels.json labels.json
+	refuses "-o images/view_001.png would overwrite photograph images/view_001.png" box-detect --model detector -o images/view_001.png \
+		$(printf 'images/view_000.png %.0s' {1..20}) images/view_001.png # more files than a table of options has
+	refuses "-o detector/model.safetensors would be among the files of --model detector" box-detect --model detector \
+		-o detector/model.safetensors --scene scene
+	refuses "-o scene/cameras.json would be among the files of --scene scene" box-detect --model detector -o scene/cameras.json --scene scene
 	refuses "-o truth.jsonl would overwrite MASKS truth.jsonl" mask-export -o truth.jsonl truth.jsonl
 	refuses "-o point_cloud.ply would overwrite SPLATS point_cloud.ply" gs-transform --format ply -o point_cloud.ply point_cloud.ply
 	refuses "-o masks.jsonl would overwrite --masks masks.jsonl" feature-lift --scene scene --weights weights --masks masks.jsonl -o masks.jsonl

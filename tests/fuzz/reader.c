@@ -20,6 +20,7 @@
 #include "formats/images/png.h"
 #include "formats/records/annotations.h"
 #include "formats/records/boxes.h"
+#include "formats/records/detections.h"
 #include "formats/records/masks.h"
 #include "formats/records/sentences.h"
 #include "formats/scene/checkpoint.h"
@@ -56,6 +57,7 @@ static struct err e;
 
 SIMPLE(boxes, struct box_set, boxes_read, boxes_free)
 SIMPLE(check, struct check, check_file, check_free)
+SIMPLE(detections, struct detections, detections_read, detections_free)
 SIMPLE(features, struct features, features_open, features_close)
 SIMPLE(masks, struct masks, masks_read, masks_free)
 SIMPLE(model, struct model, model_read, model_free)
@@ -285,6 +287,7 @@ static const struct target {
 	{"colmap-binary", try_colmap, {"cameras.bin", "images.bin"}, 0},
 	{"colmap-text", try_colmap, {"cameras.txt", "images.txt"}, 0},
 	{"dataparser", try_dataparser, {0}, 0},
+	{"detections", try_detections, {0}, 0},
 	{"features", try_features, {0}, 0},
 	{"glb", try_scene, {0}, 0},
 	{"gltf", try_gltf, {"scene.gltf", "numbers.bin"}, 0},

@@ -126,6 +126,8 @@ printf '{"transform":[[1,0,0,0],[0,1,0,0],[0,0,1,0]],"scale":0.5}' >dataparser.j
 seed annotations labels.json coco.json isat.json ref-lerf.json grounded.json shapes.json
 folder_cut bert 64 encoder/config.json encoder/model.safetensors
 seed boxes some-boxes.jsonl located.jsonl
+printf '{"view":"v","class":"cup","score":0.5,"size":[6,8],"box":[1,2,3,4]}\n' >detections.jsonl
+seed detections detections.jsonl
 seed camerafile cameras3dgs.json transforms.json lens.json rational.json fisheye.json
 seed cameras small/scene/cameras.json lenses.json
 REFERSPLAT_FUZZ_SEED=$work/checkpoint "$writer"

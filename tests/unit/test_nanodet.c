@@ -87,10 +87,7 @@ static void follows_tfjs(void)
 						    golden[i].values[k]));
 	CHECK(worst < 1e-5, "%g", worst);
 	nanodet_free(&n);
-	free(in);
-	free(out);
-	free(first);
-	free(scratch);
+	mem_free_all(in, out, first, scratch);
 }
 
 /* The tent of nanodet_picture, in double. */
@@ -167,8 +164,8 @@ static void boxes(void)
 			CHECK(fabs((double)b->side[k] - (double)wanted[i][k]) < 0.01, "%zu, side %d: %g", i,
 				k, (double)b->side[k]);
 	}
-	CHECK(!strcmp(nanodet_class(0), "person") && !strcmp(nanodet_class(41), "cup") &&
-			!strcmp(nanodet_class(79), "toothbrush"),
+	CHECK(!strcmp(nanodet_classes[0], "person") && !strcmp(nanodet_classes[41], "cup") &&
+			!strcmp(nanodet_classes[79], "toothbrush"),
 		"COCO's names");
 	free(found.items);
 	found = (struct nanodet_boxes){0};
