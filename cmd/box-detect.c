@@ -50,7 +50,4 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	return detect(&options, to, e);
 }
 
-int main(int argc, char **argv)
-{
-	return cli_main(&tool, argc, argv, run);
-}
+CLI_MAIN(tool, run)

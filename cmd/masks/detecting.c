@@ -128,11 +128,9 @@ static int detect_in(
 		return -1;
 	const struct nanodet_window whole = {0, 0, width, height};
 	y->boxes.n = 0;
-	return detect_window(y, rgb, width, &whole, (float)d->score, e) ||
-			       (d->crops && detect_parts(y, rgb, height, width, (float)d->score, e)) ||
-			       put_boxes(y, c->name, height, width, out, e)
-		       ? -1
-		       : 0;
+	return -(detect_window(y, rgb, width, &whole, (float)d->score, e) ||
+		 (d->crops && detect_parts(y, rgb, height, width, (float)d->score, e)) ||
+		 put_boxes(y, c->name, height, width, out, e));
 }
 
 int detect(const struct detecting *d, const struct report *to, struct err *e)

@@ -66,10 +66,8 @@ int detections_read(struct detections *d, const char *path, struct err *e)
 	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 
 	*d = (struct detections){0};
-	return jsonl_open(&j, path, e) || jsonl_records(&j, sizeof *d->items, read_record, release,
-						  (void **)&d->items, &d->n, NULL, e)
-		       ? -1
-		       : 0;
+	return -(jsonl_open(&j, path, e) || jsonl_records(&j, sizeof *d->items, read_record, release,
+						    (void **)&d->items, &d->n, NULL, e));
 }
 
 int detections_put(FILE *out, const struct detection *d, struct err *e)
