@@ -20,6 +20,14 @@
 
 enum { COMMON_COUNT = 8, MOST_ROWS = 64, HELP_COLUMN = 32 };
 
+/* Every option of a tool in the order of --help: its own, the shared ones, and at last help and version,
+ * which are taken before others are looked for. */
+struct options {
+	struct cli_option common[COMMON_COUNT];
+	const struct cli_option *rows[MOST_ROWS];
+	size_t n, found; /* found: without the last two */
+};
+
 /* The shared options that this tool honours, as rows of the same kind as its own. */
 static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
 {
@@ -47,7 +55,22 @@ static int common_rows(struct cli *c, struct cli_option rows[COMMON_COUNT])
 	if (common & CLI_QUIET)
 		rows[n++] = (struct cli_option){
 			"quiet", 'q', CLI_FLAG, &c->quiet, NULL, "no progress and no warnings", 0, 0};
+	rows[n++] = (struct cli_option){"help", 'h', CLI_FLAG, NULL, NULL, "print this help", 0, 0};
+	rows[n++] = (struct cli_option){"version", 'V', CLI_FLAG, NULL, NULL, "print the version", 0, 0};
 	return n;
+}
+
+static void list_options(struct options *all, struct cli *c)
+{
+	const int n = common_rows(c, all->common);
+
+	all->n = 0;
+	for (const struct cli_option *o = c->tool->options; o && o->name && all->n + COMMON_COUNT < MOST_ROWS;
+		o++)
+		all->rows[all->n++] = o;
+	for (int i = 0; i < n; i++)
+		all->rows[all->n++] = &all->common[i];
+	all->found = all->n - 2;
 }
 
 /* Words after a margin of HELP_COLUMN columns, broken before column 100. */
@@ -77,46 +100,20 @@ static void print_row(const struct cli_option *o)
 	print_wrapped(o->help, HELP_COLUMN);
 }
 
-/* Every option of the tool, in the order of --help; returns how many. */
-static size_t all_rows(
-	const struct cli *c, const struct cli_option *common, int n, const struct cli_option *rows[MOST_ROWS])
+static void print_help(const struct cli *c, const struct options *all)
 {
-	static const struct cli_option last[] = {{"help", 'h', CLI_FLAG, NULL, NULL, "print this help", 0, 0},
-		{"version", 'V', CLI_FLAG, NULL, NULL, "print the version", 0, 0}};
-	size_t count = 0;
-
-	for (const struct cli_option *o = c->tool->options; o && o->name && count + COMMON_COUNT < MOST_ROWS;
-		o++)
-		rows[count++] = o;
-	for (int i = 0; i < n; i++)
-		rows[count++] = &common[i];
-	rows[count++] = &last[0];
-	rows[count++] = &last[1];
-	return count;
-}
-
-static void print_help(struct cli *c)
-{
-	struct cli_option common[COMMON_COUNT];
-	const struct cli_option *rows[MOST_ROWS];
-	const size_t n = all_rows(c, common, common_rows(c, common), rows);
-
 	printf("Usage: %s [OPTION]... %s\n%s\n\n", c->tool->name, c->tool->operands, c->tool->summary);
-	for (size_t i = 0; i < n; i++)
-		print_row(rows[i]);
+	for (size_t i = 0; i < all->n; i++)
+		print_row(all->rows[i]);
 }
 
 /* For the build: see cli/completion.h. */
-static void print_completion(struct cli *c, const char *shell)
+static void print_completion(const struct cli *c, const struct options *all, const char *shell)
 {
-	struct cli_option common[COMMON_COUNT];
-	const struct cli_option *rows[MOST_ROWS];
-	const size_t n = all_rows(c, common, common_rows(c, common), rows);
-
 	if (!strcmp(shell, "bash"))
-		completion_bash(c->tool, rows, n);
+		completion_bash(c->tool, all->rows, all->n);
 	else if (!strcmp(shell, "zsh"))
-		completion_zsh(c->tool, rows, n);
+		completion_zsh(c->tool, all->rows, all->n);
 	else
 		cli_usage(c, "--completion: '%s' is not one of bash|zsh", shell);
 }
@@ -223,25 +220,23 @@ static void set_value(const struct cli *c, const struct cli_option *o, const cha
 	}
 }
 
-static const struct cli_option *find_row(const struct cli_tool *tool, const struct cli_option *common, int n,
-	const char *name, size_t len, char letter)
+static const struct cli_option *find_row(const struct options *all, const char *name, size_t len, char letter)
 {
-	for (const struct cli_option *o = tool->options; o && o->name; o++)
+	for (size_t i = 0; i < all->found; i++) {
+		const struct cli_option *o = all->rows[i];
 		if (letter ? o->letter == letter : (strlen(o->name) == len && !strncmp(o->name, name, len)))
 			return o;
-	for (int i = 0; i < n; i++)
-		if (letter ? common[i].letter == letter
-			   : (strlen(common[i].name) == len && !strncmp(common[i].name, name, len)))
-			return &common[i];
+	}
 	return NULL;
 }
 
-static void check_help(struct cli *c, int is_help, int is_version, const char *completion)
+static void check_help(
+	const struct cli *c, const struct options *all, int is_help, int is_version, const char *completion)
 {
 	if (is_help)
-		print_help(c);
+		print_help(c, all);
 	else if (completion)
-		print_completion(c, completion);
+		print_completion(c, all, completion);
 	else if (is_version)
 		printf("%s (refersplat) %s\n", c->tool->name, VERSION);
 	else
@@ -252,14 +247,14 @@ static void check_help(struct cli *c, int is_help, int is_version, const char *c
 	exit(ERR_SYSTEM);
 }
 
-static void parse_long(struct cli *c, const struct cli_option *rows, int n, char **argv, int argc, int *i)
+static void parse_long(const struct cli *c, const struct options *all, char **argv, int argc, int *i)
 {
 	const char *name = argv[*i] + 2, *equals = strchr(name, '=');
 	size_t len = equals ? (size_t)(equals - name) : strlen(name);
 
-	check_help(c, !strcmp(name, "help"), !strcmp(name, "version"),
+	check_help(c, all, !strcmp(name, "help"), !strcmp(name, "version"),
 		equals && !strncmp(name, "completion=", 11) ? equals + 1 : NULL);
-	const struct cli_option *o = find_row(c->tool, rows, n, name, len, 0);
+	const struct cli_option *o = find_row(all, name, len, 0);
 	if (!o)
 		cli_usage(c, "unknown option '--%.*s'", (int)len, name);
 	if (o->type == CLI_FLAG) {
@@ -275,11 +270,11 @@ static void parse_long(struct cli *c, const struct cli_option *rows, int n, char
 	}
 }
 
-static void parse_short(struct cli *c, const struct cli_option *rows, int n, char **argv, int argc, int *i)
+static void parse_short(const struct cli *c, const struct options *all, char **argv, int argc, int *i)
 {
 	for (const char *p = argv[*i] + 1; *p; p++) {
-		check_help(c, *p == 'h', *p == 'V', NULL);
-		const struct cli_option *o = find_row(c->tool, rows, n, "", 0, *p);
+		check_help(c, all, *p == 'h', *p == 'V', NULL);
+		const struct cli_option *o = find_row(all, "", 0, *p);
 		if (!o)
 			cli_usage(c, "unknown option '-%c'", *p);
 		if (o->type == CLI_FLAG) {
@@ -299,23 +294,23 @@ static void parse_short(struct cli *c, const struct cli_option *rows, int n, cha
 
 void cli_parse(struct cli *c, const struct cli_tool *tool, int argc, char **argv)
 {
-	struct cli_option rows[COMMON_COUNT];
-	int only_operands = 0, n;
+	struct options all;
+	int only_operands = 0;
 
 	*c = (struct cli){
 		.tool = tool, .seed = 1, .output = tool->needs_output ? NULL : "-", .start = cli_seconds()};
 	signals_catch(tool->name);
 	c->operands = (const char **)(argv + 1);
-	n = common_rows(c, rows);
+	list_options(&all, c);
 	for (int i = 1; i < argc; i++)
 		if (only_operands || argv[i][0] != '-' || !argv[i][1])
 			c->operands[c->operand_count++] = argv[i];
 		else if (!strcmp(argv[i], "--"))
 			only_operands = 1;
 		else if (argv[i][1] == '-')
-			parse_long(c, rows, n, argv, argc, &i);
+			parse_long(c, &all, argv, argc, &i);
 		else
-			parse_short(c, rows, n, argv, argc, &i);
+			parse_short(c, &all, argv, argc, &i);
 	if (tool->needs_output && !c->output)
 		cli_usage(c, "-o %s is required", tool->output_arg ? tool->output_arg : "FILE");
 	if (c->operand_count < tool->min_operands)
