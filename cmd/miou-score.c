@@ -22,12 +22,14 @@ static void check_paths(const struct cli *c, const struct scoring_files *p)
 static struct scoring_files paths;
 static double fail_under, confidence = 0.95;
 static long long resamples;
-static int is_partial, is_csv, is_boxes, is_answers;
+static int is_partial, is_csv, is_boxes, is_answers, is_best;
 
 static const struct cli_option options[] = {
 	CLI_TEXT("truth", &paths.truth, "TRUTH", "the true masks (required)"),
 	CLI_SWITCH("predicted-views", &is_partial,
 		"score only views that have a prediction; else truth of others counts as missing"),
+	CLI_SWITCH("best", &is_best,
+		"whatever predictions are called: of each thing of the truth its best object"),
 	CLI_TEXT("compare", &paths.other, "OTHER",
 		"other predictions of the same truth: which are better, pair by pair"),
 	CLI_TEXT("sentences", &paths.sentences, "FILE", "of --answers: which objects each sentence means"),
@@ -65,6 +67,8 @@ static void check(const struct cli *c)
 	if (is_boxes && (is_partial || paths.other || paths.sentences || paths.parses || paths.whole ||
 				resamples || is_csv))
 		cli_usage(c, "--boxes goes with --truth, --json and --fail-under only");
+	if (is_best && (is_boxes || is_answers || paths.other))
+		cli_usage(c, "--best does not go with --boxes, --answers and --compare");
 	if (is_answers != (paths.sentences != NULL))
 		cli_usage(c,
 			is_answers ? "--answers needs --sentences" : "--sentences goes with --answers only");
@@ -89,6 +93,8 @@ static int score(const struct cli *c, double *reached, const struct report *to, 
 	if (is_boxes)
 		return scoring_boxes(&paths, c->output, c->json, reached, to, e);
 	if (scoring_read(&in, &paths, is_partial, e))
+		return -1;
+	if (is_best && scoring_take_best(&in, e))
 		return -1;
 	if (is_answers)
 		return scoring_answers(&in, c->output, c->json, reached, to, e);

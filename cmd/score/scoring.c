@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "base/names.h"
 #include "mask/mask_index.h"
+#include "score/score_best.h"
 #include "score/score_choice.h"
 #include "score/score_groups.h"
 #include "score/score.h"
@@ -104,6 +105,19 @@ int scoring_read(struct scoring *in, const struct scoring_files *p, int is_parti
 		 score_masks_check(&in->whole, &in->truth, e) ||
 		 (is_partial && score_keep_views(in->truth.set.items, &in->truth.n, in->predictions.set.items,
 					in->predictions.n, in->other.set.items, in->other.n, e)));
+}
+
+int scoring_take_best(struct scoring *in, struct err *e)
+{
+	struct masks named = {0};
+
+	if (score_best(&named, in->truth.set.items, in->truth.n, in->predictions.set.items, in->predictions.n,
+		    e))
+		return -1;
+	masks_free(&in->predictions.set);
+	in->predictions.set = named;
+	in->predictions.n = named.n;
+	return 0;
 }
 
 void scoring_free(struct scoring *in)

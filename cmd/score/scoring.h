@@ -88,6 +88,10 @@ struct scoring {
 int scoring_read(struct scoring *in, const struct scoring_files *files, int is_partial, struct err *e);
 void scoring_free(struct scoring *in);
 
+/* Of each thing of the truth the predictions are its best object's from here on: score_best. The lines of the
+ * predictions no longer count. */
+int scoring_take_best(struct scoring *in, struct err *e);
+
 /* Scores masks: s->all and those tables that s->has_... asks for, beside the other predictions where
  * s->is_compared. Tells of what was left out. */
 int scoring_pairs(const struct scoring *in, struct scores *s, const struct report *to, struct err *e);

@@ -16,6 +16,7 @@ struct search {
 	size_t self; /* of the points, or none */
 	int k;
 	double nearest[NEIGHBOURS_MOST]; /* squared, rising */
+	size_t which[NEIGHBOURS_MOST];
 };
 
 static float at(const struct tree *t, size_t place, int axis)
@@ -70,15 +71,18 @@ static void build(struct tree *t, size_t low, size_t high, int axis)
 	}
 }
 
-static void offer(struct search *s, double squared)
+static void offer(struct search *s, double squared, size_t point)
 {
 	int i = s->k - 1;
 
 	if (squared >= s->nearest[i])
 		return;
-	for (; i > 0 && s->nearest[i - 1] > squared; i--)
+	for (; i > 0 && s->nearest[i - 1] > squared; i--) {
 		s->nearest[i] = s->nearest[i - 1];
+		s->which[i] = s->which[i - 1];
+	}
 	s->nearest[i] = squared;
+	s->which[i] = point;
 }
 
 static void look(const struct tree *t, size_t low, size_t high, int axis, struct search *s)
@@ -92,7 +96,7 @@ static void look(const struct tree *t, size_t low, size_t high, int axis, struct
 			     z = (double)p[2] - from[2];
 		const double side = (double)from[axis] - p[axis];
 		if (here != s->self)
-			offer(s, x * x + y * y + z * z);
+			offer(s, x * x + y * y + z * z, here);
 		axis = (axis + 1) % 3;
 		if (side < 0) {
 			look(t, low, middle, axis, s);
@@ -106,9 +110,9 @@ static void look(const struct tree *t, size_t low, size_t high, int axis, struct
 	}
 }
 
-/* from (m,3) are the points where `is_same`, else others. */
+/* from (m,3) are the points where `is_same`, else others. distance (m) or near (m,k), or NULL. */
 static int find(const float *points, size_t n, const float *from, size_t m, int is_same, int k,
-	float *distance, struct err *e)
+	float *distance, int32_t *near, struct err *e)
 {
 	struct tree t = {points, mem_alloc(n, sizeof *t.order, "neighbours", e)};
 
@@ -123,7 +127,10 @@ static int find(const float *points, size_t n, const float *from, size_t m, int 
 		for (int j = 0; j < k; j++)
 			s.nearest[j] = INFINITY;
 		look(&t, 0, n, 0, &s);
-		distance[i] = (float)sqrt(s.nearest[k - 1]);
+		if (distance)
+			distance[i] = (float)sqrt(s.nearest[k - 1]);
+		for (int j = 0; j < k && near; j++)
+			near[i * (size_t)k + (size_t)j] = s.nearest[j] < INFINITY ? (int32_t)s.which[j] : -1;
 	}
 	free(t.order);
 	return 0;
@@ -131,11 +138,16 @@ static int find(const float *points, size_t n, const float *from, size_t m, int 
 
 int neighbours_find(const float *points, size_t n, int k, float *distance, struct err *e)
 {
-	return find(points, n, points, n, 1, k, distance, e);
+	return find(points, n, points, n, 1, k, distance, NULL, e);
 }
 
 int neighbours_of(
 	const float *points, size_t n, const float *from, size_t m, int k, float *distance, struct err *e)
 {
-	return find(points, n, from, m, 0, k, distance, e);
+	return find(points, n, from, m, 0, k, distance, NULL, e);
+}
+
+int neighbours_list(const float *points, size_t n, int k, int32_t *near, struct err *e)
+{
+	return find(points, n, points, n, 1, k, NULL, near, e);
 }

@@ -1,7 +1,9 @@
-/* How far a point's neighbours are. */
+/* A point's neighbours, and how far they are. */
 #pragma once
 
 #include "base/err.h"
+
+#include <stdint.h>
 
 enum { NEIGHBOURS_MOST = 16 };
 
@@ -12,3 +14,7 @@ int neighbours_find(const float *points, size_t n, int k, float *distance, struc
 /* The same of each of `from` (m,3), which are none of the points. */
 int neighbours_of(
 	const float *points, size_t n, const float *from, size_t m, int k, float *distance, struct err *e);
+
+/* near (n,k): the numbers of the k nearest other points of each, the nearest first; -1 where there are fewer.
+ */
+int neighbours_list(const float *points, size_t n, int k, int32_t *near, struct err *e);

@@ -35,6 +35,7 @@ commands() {
 		text-parse --quiet -o out text.safetensors
 		parse-train --sentences -o out marked
 		pseudomask-select -o out candidates.jsonl
+		pseudomask-propose --weights weights -o out scene
 		mask-import -o out labels.json
 		mask-export -o out truth.jsonl
 		box-detect --quiet --model detector -o out images/view_001.png

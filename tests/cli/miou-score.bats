@@ -246,6 +246,25 @@ make_scene() {
 	done >truth.jsonl 3>whole.jsonl 4>pred.jsonl 5>other.jsonl
 }
 
+@test "--best: each thing has its best object in all views" {
+	# "a" is the cup in v1 only, "b" half of it in both
+	cat > regions.jsonl <<-END
+	{"view":"v1","object":"a","segmentation":$four}
+	{"view":"v2","object":"a","segmentation":$none}
+	{"view":"v1","object":"b","segmentation":$two}
+	{"view":"v2","object":"b","segmentation":'{"size":[1,8],"counts":[0,3,5]}'}
+	END
+	sed -i "s/'//g" regions.jsonl
+	run "$BIN/miou-score" --best --json --truth truth.jsonl regions.jsonl
+	[ "$(jq -c '[.objects.cup.miou, .objects.spoon.miou]' <<<"$output")" = '[0.625,1]' ]
+	[ "$("$BIN/miou-score" --best --json --truth truth.jsonl truth.jsonl | jq .miou)" = 1 ]
+	tac regions.jsonl | "$BIN/miou-score" --best --json --truth truth.jsonl - | cmp - <(echo "$output")
+	for other in --boxes "--answers --sentences x" "--compare pred.jsonl"; do
+		run "$BIN/miou-score" --best $other --truth truth.jsonl regions.jsonl
+		[ "$status" = 2 ]
+	done
+}
+
 @test "--bootstrap: an interval, and of what" {
 	make_scene
 	run --separate-stderr "$BIN/miou-score" --truth truth.jsonl --bootstrap 1000 pred.jsonl

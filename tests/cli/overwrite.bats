@@ -86,6 +86,8 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 		--weights weights -o scene/cameras.json candidates.jsonl
 	refuses "--spare candidates.jsonl would overwrite CANDIDATES candidates.jsonl" pseudomask-select --scene scene \
 		--weights weights --spare candidates.jsonl -o masks candidates.jsonl
+	refuses "-o boxes.jsonl would overwrite --boxes boxes.jsonl" pseudomask-propose --weights weights --boxes boxes.jsonl \
+		-o boxes.jsonl scene
 	refuses "-o sentences.jsonl would overwrite SENTENCES sentences.jsonl" text-encode --model encoder -o sentences.jsonl sentences.jsonl
 	refuses "-o encoder/vocab.txt would be among the files of --model encoder" text-encode --model encoder -o encoder/vocab.txt sentences.jsonl
 	for option in --truth --compare --sentences --parses --whole; do

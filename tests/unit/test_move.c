@@ -149,6 +149,7 @@ static int rising(const void *a, const void *b)
 static void test_neighbours(size_t n, int k, int steps)
 {
 	static float points[3 * 500], found[500];
+	static int32_t near[500 * NEIGHBOURS_MOST];
 	static double all[500];
 	struct rng r;
 	struct err e;
@@ -157,7 +158,8 @@ static void test_neighbours(size_t n, int k, int steps)
 	rng_seed(&r, n + (size_t)k, (uint64_t)steps);
 	for (size_t i = 0; i < 3 * n; i++)
 		points[i] = (float)rng_below(&r, (uint32_t)steps) / (float)steps;
-	if (!CHECK(!neighbours_find(points, n, k, found, &e), "%s", e.message))
+	if (!CHECK(!neighbours_find(points, n, k, found, &e), "%s", e.message) ||
+		!CHECK(!neighbours_list(points, n, k, near, &e), "%s", e.message))
 		return;
 	for (size_t i = 0; i < n; i++) {
 		size_t others = 0;
@@ -171,6 +173,14 @@ static void test_neighbours(size_t n, int k, int steps)
 		qsort(all, others, sizeof *all, rising);
 		const double right = others >= (size_t)k ? all[k - 1] : INFINITY;
 		wrong += right == INFINITY ? found[i] != INFINITY : fabs(found[i] - right) > 1e-6;
+		for (int j = 0; j < k; j++) {
+			const int32_t other = near[i * (size_t)k + (size_t)j];
+			const float *p = points + 3 * i, *q = points + 3 * (other < 0 ? 0 : other);
+			const double d = sqrt(pow((double)p[0] - q[0], 2) + pow((double)p[1] - q[1], 2) +
+					      pow((double)p[2] - q[2], 2));
+			wrong += other < 0 ? others > (size_t)j
+					   : other == (int32_t)i || fabs(d - all[j]) > 1e-6;
+		}
 	}
 	CHECK(!wrong, "%zu points, %d nearest, %d steps: %d are wrong", n, k, steps, wrong);
 }
