@@ -95,13 +95,12 @@ int render_colors(const struct render_view *v, const struct splats *s, const str
 	const float background[3], float *rgb, struct err *e)
 {
 	size_t pixels = (size_t)v->grid.width * (size_t)v->grid.height;
-	float *colors = mem_alloc(v->gaussians, 3 * sizeof *colors, "colours", e);
-	float *planes = mem_alloc(pixels, 4 * sizeof *planes, "image", e);
+	SCOPED float *colors = mem_alloc(v->gaussians, 3 * sizeof *colors, "colours", e);
+	SCOPED float *planes = mem_alloc(pixels, 4 * sizeof *planes, "image", e);
 	double centre[3];
-	int bad = -1;
 
 	if (!colors || !planes)
-		goto done;
+		return -1;
 	camera_centre(c, centre);
 #pragma omp parallel for schedule(static)
 	for (size_t i = 0; i < v->visible; i++) {
@@ -118,9 +117,5 @@ int render_colors(const struct render_view *v, const struct splats *s, const str
 			float x = planes[k * pixels + p] + background[k] * planes[3 * pixels + p];
 			rgb[3 * p + k] = x < 0 ? 0 : x > 1 ? 1 : x;
 		}
-	bad = 0;
-done:
-	free(colors);
-	free(planes);
-	return bad;
+	return 0;
 }
