@@ -14,6 +14,7 @@ static const struct cli_option options[] = {
 	CLI_SWITCH("disjoint", &o.is_disjoint, "regions none of which is in another"),
 	{"most", 0, CLI_INT, &o.most, "N", "at most so many regions (default 110, and 40 with --disjoint)", 1,
 		10000},
+	CLI_TEXT("regions", &o.regions, "FILE", "also write the tree of all regions, for mask-pick"),
 	CLI_ONE_OF("split", &o.split, "train|test|all", "the views to write masks of"),
 	{0},
 };
@@ -36,7 +37,7 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	o.output = c->output;
 	if (!o.weights)
 		cli_usage(c, "--weights WEIGHTS is required");
-	cli_refuse_overwrite(c, "SCENE " CLI_WEIGHTS " boxes", "output", NULL);
+	cli_refuse_overwrite(c, "SCENE " CLI_WEIGHTS " boxes", "output regions", NULL);
 	return proposing_write(&p, &o, to, e);
 }
 

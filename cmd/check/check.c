@@ -33,6 +33,7 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 		{"refer.lifted", check_lifted},
 		{"refer.features", check_features},
 		{"refer.selection", check_selection},
+		{"refer.regions", check_regions},
 		{"refer.parser", check_parser},
 	};
 

@@ -57,6 +57,7 @@ int check_model(struct check *c, const char *path, struct err *e);
 int check_lifted(struct check *c, const char *path, struct err *e);
 int check_features(struct check *c, const char *path, struct err *e);
 int check_selection(struct check *c, const char *path, struct err *e);
+int check_regions(struct check *c, const char *path, struct err *e);
 int check_parser(struct check *c, const char *path, struct err *e);
 
 /* The others. */

@@ -9,6 +9,7 @@
 #include "formats/arrays/npz.h"
 #include "formats/encoders/parser_weights.h"
 #include "formats/images/png.h"
+#include "formats/scene/proposed.h"
 #include "formats/scene/selection.h"
 #include "formats/scene/text.h"
 #include "formats/scene/weights.h"
@@ -156,6 +157,18 @@ int check_selection(struct check *c, const char *path, struct err *e)
 	check_add(c, "sentences", (long long)s.n);
 	check_add(c, "items", (long long)s.indptr[s.n]);
 	check_add(c, "gaussians of the scene", (long long)s.gaussians);
+	return 0;
+}
+
+int check_regions(struct check *c, const char *path, struct err *e)
+{
+	SCOPED_BY(regions_file_free) struct regions_file r = {0};
+
+	if (regions_file_read(&r, path, e))
+		return -1;
+	c->scene = r.scene;
+	check_add(c, "regions", r.tree.n);
+	check_add(c, "gaussians of the scene", (long long)r.tree.gaussians);
 	return 0;
 }
 

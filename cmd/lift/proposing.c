@@ -6,6 +6,7 @@
 #include "base/names.h"
 #include "cmd/import/warping.h"
 #include "formats/records/masks.h"
+#include "formats/scene/proposed.h"
 #include "formats/scene/weights.h"
 #include "geom/views.h"
 #include "mask/shrink.h"
@@ -21,7 +22,8 @@
 enum { NEIGHBOURS = 12 };
 #define LINKAGE_POWER 0.1
 #define LEAST_REGION 2e-4 /* of all blend weight that a node has */
-#define NESTED_AGREE 0.9
+/* IoU above which two regions are one. Photographs alone have many regions that nearly agree. */
+#define NESTED_AGREE (p->box_count ? 0.9 : 0.7)
 
 void proposing_free(struct proposing *p)
 {
@@ -326,6 +328,18 @@ static int put_all(struct proposing *p, FILE *out, struct err *e)
 	return 0;
 }
 
+static int write_regions(const struct proposing *p, struct err *e)
+{
+	SCOPED float *score = mem_alloc((size_t)p->tree.n, sizeof *score, "regions", e);
+	const struct regions_file file = {p->tree, score, p->scene.fingerprint};
+
+	if (!score)
+		return -1;
+	for (int32_t k = 0; k < p->tree.n; k++)
+		score[k] = (float)p->score[k];
+	return regions_file_write(&file, p->options->regions, p->options->boxes ? "--boxes" : "", e);
+}
+
 int proposing_write(
 	struct proposing *p, const struct proposing_options *options, const struct report *to, struct err *e)
 {
@@ -337,7 +351,8 @@ int proposing_write(
 		return -1;
 	const struct each by = {p, each_workers(p->scene.cameras.n), read_pieces, NULL};
 	if (each_run(&by, p->scene.cameras.n, e) || add_views(p, e) || grow_tree(p, e) ||
-		choose_regions(p, to, e) || file_out_open(&out, options->output, e))
+		choose_regions(p, to, e) || (options->regions && write_regions(p, e)) ||
+		file_out_open(&out, options->output, e))
 		return -1;
 	return file_out_end(&out, put_all(p, out.stream, e), e);
 }

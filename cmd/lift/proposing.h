@@ -1,5 +1,5 @@
 /* Regions of a scene without masks of anything, from its photographs and perhaps a detector's boxes:
- * pseudomask-propose. formats/records/detections.md. */
+ * pseudomask-propose. formats/records/detections.md, formats/scene/proposed.md. */
 #pragma once
 
 #include "base/err.h"
@@ -15,9 +15,10 @@
 
 struct proposing_options {
 	const char *scene, *weights;
-	const char *boxes;  /* a detector's, "-" is stdin; NULL: none */
-	const char *output; /* of the masks, "-" is stdout */
-	int split;	    /* the views that get masks: PROPOSING_... */
+	const char *boxes;   /* a detector's, "-" is stdin; NULL: none */
+	const char *output;  /* of the masks, "-" is stdout */
+	const char *regions; /* file for the tree; NULL: none */
+	int split;	     /* the views that get masks: PROPOSING_... */
 	int is_disjoint;
 	long long most; /* regions; 0: PROPOSING_NESTED, or PROPOSING_DISJOINT */
 };

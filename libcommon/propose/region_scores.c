@@ -26,17 +26,6 @@ int region_scores_init(struct region_scores *s, int32_t n, struct err *e)
 	return 0;
 }
 
-static double box_agreement(const struct region_shown *s, const struct affinity_box *b)
-{
-	const double across = fmin(s->right, b->right) - fmax(s->left, b->left),
-		     down = fmin(s->bottom, b->bottom) - fmax(s->top, b->top);
-	const double both = fmax(across, 0) * fmax(down, 0);
-	const double all = (double)(s->right - s->left) * (s->bottom - s->top) +
-			   (b->right - b->left) * (b->bottom - b->top) - both;
-
-	return all > 0 ? both / all : 0;
-}
-
 /* Pixels of a segment and of a node that is the lowest of theirs. */
 struct overlap {
 	int32_t segment, node, pixels;
@@ -135,7 +124,9 @@ int region_scores_view(struct region_scores *s, const struct region_tree *t, con
 		if (shown[k].area < LEAST_SHOWN * pixels)
 			continue;
 		for (size_t b = 0; b < box_count; b++) {
-			const double iou = box_agreement(&shown[k], &boxes[b]);
+			const struct affinity_box *a = &boxes[b];
+			const double box_of[4] = {a->left, a->top, a->right, a->bottom};
+			const double iou = region_shown_agrees(&shown[k], box_of);
 			box = fmax(box, iou * iou * sqrt(boxes[b].score));
 		}
 		s->image[k] += best[k] * best[k];

@@ -223,6 +223,17 @@ int region_tree_measure(const struct region_tree *t, const int32_t *at, int heig
 	return 0;
 }
 
+double region_shown_agrees(const struct region_shown *s, const double box[4])
+{
+	const double across = fmin(s->right, box[2]) - fmax(s->left, box[0]),
+		     down = fmin(s->bottom, box[3]) - fmax(s->top, box[1]);
+	const double both = fmax(across, 0) * fmax(down, 0);
+	const double all = (double)(s->right - s->left) * (s->bottom - s->top) +
+			   (box[2] - box[0]) * (box[3] - box[1]) - both;
+
+	return all > 0 ? both / all : 0;
+}
+
 struct ranked {
 	double score;
 	int32_t node;

@@ -49,6 +49,9 @@ struct region_shown {
 int region_tree_measure(const struct region_tree *t, const int32_t *at, int height, int width,
 	struct region_shown *shown, struct err *e);
 
+/* Intersection over union of what is shown and a box: left, top, right, bottom. */
+double region_shown_agrees(const struct region_shown *s, const double box[4]);
+
 /* The best regions by score (n), none of whose masks agree, by intersection over union, more than `agree`:
  * area (n) is that of all masks. chosen (most) gets them, the best first. Only those with a score above 0.
  * Returns how many, or -1 with *e set for want of memory. */

@@ -25,6 +25,7 @@ missing_input() {
 		text-parse -o out none
 		parse-train --text none -o out none
 		pseudomask-select -o out none
+		mask-pick --regions none --name x --point x:1,1 -o out none
 		pseudomask-propose --weights none -o out none
 		mask-import --names none -o out none
 		box-detect --model none -o out none

@@ -28,6 +28,7 @@
 #include "formats/scene/lifted.h"
 #include "formats/scene/model.h"
 #include "formats/scene/scene.h"
+#include "formats/scene/proposed.h"
 #include "formats/scene/selection.h"
 #include "formats/scene/text.h"
 #include "formats/scene/weights.h"
@@ -65,6 +66,7 @@ SIMPLE(npy, struct npy, npy_open, npy_close)
 SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
 SIMPLE(selection, struct selection, selection_read, selection_free)
+SIMPLE(regions, struct regions_file, regions_file_read, regions_file_free)
 SIMPLE(cameras, struct cameras, scene_read_cameras_file, cameras_free)
 SIMPLE(splats, struct scene, scene_read_splats, scene_free)
 SIMPLE(sentences, struct sentences, sentences_read_any, sentences_free)
@@ -306,6 +308,7 @@ static const struct target {
 	{"safetensors", try_safetensors, {0}, 0},
 	{"scene", try_folder, {"cameras.json", "splats.safetensors"}, 0},
 	{"selection", try_selection, {0}, 0},
+	{"regions", try_regions, {0}, 0},
 	{"sentences", try_sentences, {0}, 0},
 	{"sog", try_sog,
 		{"meta.json", "means_l.webp", "means_u.webp", "quats.webp", "scales.webp", "sh0.webp",

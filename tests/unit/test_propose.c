@@ -2,6 +2,7 @@
 #include "base/rng.h"
 #include "propose/affinity.h"
 #include "propose/linkage.h"
+#include "propose/region_pick.h"
 #include "propose/region_scores.h"
 #include "propose/region_tree.h"
 #include "mask/bits.h"
@@ -437,6 +438,36 @@ static void test_scores(void)
 	region_scores_free(&s);
 }
 
+/* 0 has 1 and 4, 1 has 2 and 3: clicks on leaves. */
+static void test_pick(void)
+{
+	int32_t parent[5] = {-1, 0, 1, 1, 0}, end[5];
+	const float score[5] = {0.1f, 0.6f, 0.3f, 0.7f, 0.2f};
+	const struct region_shown shown[5] = {
+		{20, 0, 0, 10, 10}, {9, 0, 0, 5, 5}, {4, 0, 0, 2, 2}, {4, 3, 3, 5, 5}, {9, 6, 6, 10, 10}};
+	const double box[4] = {0, 0, 4.5, 5}, nowhere[4] = {20, 20, 30, 30};
+	struct region_tree t = {.n = 5, .parent = parent, .end = end};
+	static const struct {
+		struct region_click clicks[2];
+		int larger;
+		uint8_t is_in[5];
+	} cases[] = {{{{2, 0}, {-1, 0}}, 0, {0, 1, 1, 1, 0}}, {{{3, 0}, {-1, 0}}, 0, {0, 0, 0, 1, 0}},
+		{{{3, 0}, {-1, 0}}, 1, {0, 1, 1, 1, 0}}, {{{2, 0}, {-1, 0}}, -1, {0, 0, 1, 0, 0}},
+		{{{2, 0}, {-1, 0}}, 9, {1, 1, 1, 1, 1}}, {{{2, 0}, {3, 1}}, 0, {0, 0, 1, 0, 0}},
+		{{{2, 0}, {4, 1}}, 9, {0, 1, 1, 1, 0}}, {{{3, 0}, {4, 0}}, 0, {0, 0, 0, 1, 1}},
+		{{{2, 0}, {2, 1}}, 0, {0, 0, 0, 0, 0}}, {{{-1, 0}, {4, 1}}, 0, {0, 0, 0, 0, 0}}};
+	uint8_t is_in[5];
+
+	region_tree_span(&t);
+	for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+		const int32_t count = region_pick(&t, score, cases[k].clicks, 2, cases[k].larger, is_in);
+		CHECK(!memcmp(is_in, cases[k].is_in, 5), "case %zu", k);
+		CHECK((count > 0) == (memchr(is_in, 1, 5) != NULL), "case %zu: %d regions", k, count);
+	}
+	CHECK(region_pick_box(&t, shown, box) == 1, "the box is of %d", region_pick_box(&t, shown, box));
+	CHECK(region_pick_box(&t, shown, nowhere) == -1, "a box of nothing");
+}
+
 int main(void)
 {
 	for (uint64_t seed = 1; seed <= 6; seed++) {
@@ -447,6 +478,7 @@ int main(void)
 	for (uint64_t seed = 1; seed <= 60; seed++)
 		test_choice(seed);
 	test_order();
+	test_pick();
 	test_pieces();
 	test_scores();
 	return unit_end();

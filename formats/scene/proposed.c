@@ -1,0 +1,73 @@
+#include "formats/scene/proposed.h"
+
+#include "base/mem.h"
+#include "formats/arrays/arrays_in.h"
+#include "formats/arrays/arrays_out.h"
+
+enum { VERSION_READ = 1 };
+
+void regions_file_free(struct regions_file *r)
+{
+	region_tree_free(&r->tree);
+	free(r->score);
+	*r = (struct regions_file){0};
+}
+
+/* Nodes stand with their subtrees: a node's parent is the node before it or one of those above that. */
+static int check_tree(const struct region_tree *t, const char *path, struct err *e)
+{
+	for (int32_t i = 0; i < t->n; i++) {
+		int32_t above = i - 1;
+		while (above >= 0 && above > t->parent[i])
+			above = t->parent[above];
+		if (t->parent[i] != above)
+			return err_file(e, path,
+				"tensor 'parent': node %d is not below the one before it or one above that",
+				i);
+	}
+	for (size_t i = 0; i < t->gaussians; i++)
+		if (t->node[i] < -1 || t->node[i] >= t->n)
+			return err_file(
+				e, path, "tensor 'node': item %zu is %d, of %d nodes", i, t->node[i], t->n);
+	return 0;
+}
+
+int regions_file_read(struct regions_file *r, const char *path, struct err *e)
+{
+	struct safetensors st;
+	struct arrays_in in;
+	size_t nodes;
+
+	*r = (struct regions_file){0};
+	if (safetensors_open(&st, path, e))
+		return -1;
+	arrays_in_begin(&in, &st, "refer.regions", VERSION_READ, e);
+	in.bad = in.bad || fingerprint_read(&r->scene, &st, "scene", e);
+	r->tree.parent = arrays_in_vector(&in, "parent", ST_I32, -1, &nodes);
+	r->tree.node = arrays_in_vector(&in, "node", ST_I32, -1, &r->tree.gaussians);
+	r->score = in.bad ? NULL : mem_alloc(nodes, sizeof *r->score, "regions", e);
+	r->tree.end = in.bad ? NULL : mem_alloc(nodes, sizeof *r->tree.end, "regions", e);
+	in.bad = in.bad || !r->score || !r->tree.end;
+	if (!in.bad)
+		arrays_in_fill(&in, "score", r->score, nodes);
+	r->tree.n = in.bad ? 0 : (int32_t)nodes;
+	const int bad = in.bad || check_tree(&r->tree, st.path, e);
+	safetensors_close(&st);
+	if (bad)
+		regions_file_free(r);
+	else
+		region_tree_span(&r->tree);
+	return bad ? -1 : 0;
+}
+
+int regions_file_write(const struct regions_file *r, const char *path, const char *options, struct err *e)
+{
+	struct arrays_out out;
+
+	arrays_out_begin(&out, path, "refer.regions", "1", "pseudomask-propose", options, 0, e);
+	arrays_out_text(&out, "scene", fingerprint_text(&r->scene));
+	arrays_out_put(&out, st_vector("parent", ST_I32, r->tree.n, r->tree.parent));
+	arrays_out_put(&out, st_vector("score", ST_F32, r->tree.n, r->score));
+	arrays_out_put(&out, st_vector("node", ST_I32, (int64_t)r->tree.gaussians, r->tree.node));
+	return arrays_out_end(&out);
+}
