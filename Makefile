@@ -247,6 +247,7 @@ check: # the tests without installing anything
 test-real: packages ## the whole method on real scenes: make test-real DATA=DIR
 	@[ -n "$(DATA)" ] || { echo "usage: make test-real DATA=DIR" >&2; exit 2; }
 	@$(MAKE) --no-print-directory encoder
+	-@$(MAKE) --no-print-directory detector
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools units
 	@tests/real.sh "$(DATA)" "$(CURDIR)/$(BUILD)" "$(BERT)"
 

@@ -46,6 +46,26 @@ static int detect_window(struct detector *y, const uint8_t *rgb, int width, cons
 	return nanodet_add(&y->boxes, y->out, w, score, e);
 }
 
+/* Leaves out the boxes from `first` on that end at an edge of the window within the picture, to a pixel of
+ * the network: they are of things that the edge cuts. */
+static void drop_cut(
+	struct nanodet_boxes *b, size_t first, const struct nanodet_window *w, int height, int width)
+{
+	const float across = (float)w->width / NANODET_SIDE, down = (float)w->height / NANODET_SIDE;
+	const float least[2] = {w->left ? (float)w->left + across : -1, w->top ? (float)w->top + down : -1};
+	const int right = w->left + w->width, bottom = w->top + w->height;
+	const float most[2] = {
+		(float)right + (right < width ? -across : 1), (float)bottom + (bottom < height ? -down : 1)};
+	size_t n = first;
+
+	for (size_t i = first; i < b->n; i++) {
+		const float *side = b->items[i].side;
+		if (side[0] > least[0] && side[1] > least[1] && side[2] < most[0] && side[3] < most[1])
+			b->items[n++] = b->items[i];
+	}
+	b->n = n;
+}
+
 /* Six parts that overlap by half, three along the longer side. */
 static int detect_parts(
 	struct detector *y, const uint8_t *rgb, int height, int width, float score, struct err *e)
@@ -57,8 +77,10 @@ static int detect_parts(
 	for (int i = 0; i < across * down; i++) {
 		w.left = (int)((int64_t)(width - w.width) * (i % across) / (across - 1));
 		w.top = (int)((int64_t)(height - w.height) * (i / across) / (down - 1));
+		const size_t first = y->boxes.n;
 		if (detect_window(y, rgb, width, &w, score, e))
 			return -1;
+		drop_cut(&y->boxes, first, &w, height, width);
 	}
 	return 0;
 }
