@@ -131,21 +131,21 @@ static void average_agreement(struct lift_objects *l)
 			l->agreement[o] /= (double)l->masks[o];
 }
 
-/* The cut of each object: the mean of IoU over its masks counts, each by its vote. */
+/* The cut of each object: the mean of IoU over its masks counts, each by its agreement. */
 static void choose_cuts(struct lift_objects *l)
 {
 	for (size_t o = 0; o < l->objects; o++) {
-		double fit[LIFT_CUTS] = {0}, votes = 0;
+		double fit[LIFT_CUTS] = {0}, all = 0;
 		for (size_t at = 0; at < l->view_count; at++) {
 			const struct lift_view *v = &l->views[at];
 			const size_t k = lift_row(v, o);
 			for (int cut = 0; k < v->n && cut < LIFT_CUTS; cut++)
-				fit[cut] += (double)v->vote[k] * (double)v->fit[k][cut];
-			votes += k < v->n ? (double)v->vote[k] : 0;
+				fit[cut] += v->agreement[k] * (double)v->fit[k][cut];
+			all += k < v->n ? v->agreement[k] : 0;
 		}
 		const double best = largest(fit, LIFT_CUTS);
 		int cut = 0;
-		while (fit[cut] < best - LIFT_CUT_GAIN * votes)
+		while (fit[cut] < best - LIFT_CUT_GAIN * all)
 			cut++;
 		l->cut[o] = LIFTED_CUT - (float)cut * (float)LIFT_CUT_STEP;
 	}

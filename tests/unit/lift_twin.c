@@ -111,9 +111,9 @@ static double naive_agreement(const struct view_weights *w, const double *mask, 
 
 static double share_of[O][N], weight_of[O][N], mean_agreement[O], cut_of[O];
 
-/* fit[k] += vote times the IoU of a mask, cut at one half, with what is above the k-th cut. */
+/* fit[k] += agreement times the IoU of a mask, cut at one half, with what is above the k-th cut. */
 static void naive_fit(
-	const struct view_weights *w, const double *mask, const double *share, double vote, double *fit)
+	const struct view_weights *w, const double *mask, const double *share, double agreement, double *fit)
 {
 	for (int cut = 0; cut < LIFT_CUTS; cut++) {
 		double both = 0, either = 0;
@@ -126,7 +126,7 @@ static void naive_fit(
 			both += on && mask[p] >= 0.5;
 			either += mask[p] + (on && mask[p] < 0.5);
 		}
-		fit[cut] += vote * (either > 0 ? both / either : 1);
+		fit[cut] += agreement * (either > 0 ? both / either : 1);
 	}
 }
 
@@ -158,8 +158,8 @@ static void naive_round(const struct lift_problem *q, int round)
 				continue;
 			const double a = round ? naive_agreement(w, mask, share_of[o]) : 1;
 			const double vote = fmax(a * a, 0.01);
-			naive_fit(w, mask, share_of[o], vote, fit);
-			votes += vote;
+			naive_fit(w, mask, share_of[o], a, fit);
+			votes += a;
 			mean_agreement[o] += a;
 			n++;
 			for (int p = 0; p < P; p++)
