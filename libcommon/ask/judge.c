@@ -15,7 +15,7 @@ static double known_except(const struct meaning *m, int except)
 {
 	const struct parse *p = m->sentence->parse;
 	const struct parse_list *clauses = &p->phrases[except].clauses;
-	double known = m->known[except];
+	double known = fmin(m->known[except], largest(there_of(m, except), objects_of(m)) / GENERIC_THERE);
 
 	for (int k = 0; k < clauses->n; k++) {
 		const struct parse_clause *c = &p->clauses[clauses->item[k]];
@@ -75,7 +75,7 @@ static void take_whole(struct meaning *m, int phrase)
 
 	if (head < 0 || m->known[phrase] >= 0.5 || p->phrases[phrase].viewer || meaning_is_scene(m, phrase))
 		return;
-	vocabulary_has(m->vocabulary, m->sentence, head, 0, has);
+	vocabulary_has(m->vocabulary, m->sentence, head, PARSE_OTHER, has);
 	if (largest(has, n) < 0.5)
 		return;
 	m->known[phrase] = PART_WORTH * largest(has, n);

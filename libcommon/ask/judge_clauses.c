@@ -140,6 +140,16 @@ static enum relate_width width_of(const struct parse *p, const struct parse_phra
 	return f->count != PARSE_ONE ? RELATE_HALF_PLANE : directions > 1 ? RELATE_WIDE : RELATE_NARROW;
 }
 
+/* How known the best known of a clause's anchors is. */
+static double known_of(const struct meaning *m, const struct parse_clause *c)
+{
+	double most = 0;
+
+	for (int k = 0; k < c->anchors.n; k++)
+		most = fmax(most, m->known[c->anchors.item[k]]);
+	return most;
+}
+
 /* value (O) of a clause that has places in it; returns how far its anchors are known. */
 static double judge_relation(
 	struct meaning *m, int phrase, const struct parse_clause *c, const double *fit, double *value)
@@ -162,6 +172,8 @@ static double judge_relation(
 	}
 	for (int k = 0; k < c->anchors.n && r.count < ANCHORS; k++) {
 		const int i = c->anchors.item[k];
+		if (c->relation == PARSE_BETWEEN && m->known[i] < 0.5 && known_of(m, c) >= 0.5)
+			continue; /* near the other one */
 		const int is_many = p->phrases[i].count != PARSE_ONE &&
 				    (r.degree != PARSE_PLAIN || !(one_will_do >> c->relation & 1));
 		anchors[r.count] = (struct relate_anchor){fit_of(m, i), meaning_is_scene(m, i),
@@ -181,6 +193,59 @@ static double judge_relation(
 			value[o] = fmax(value[o], next[o]);
 	}
 	return known;
+}
+
+/* How far an object is itself an anchor of a clause: "not beside the mug" is not said of the mug. */
+static double is_anchor(const struct meaning *m, const struct parse_clause *c, size_t o)
+{
+	double is = 0;
+
+	for (int j = 0; j < c->anchors.n; j++) {
+		const int i = c->anchors.item[j];
+		const double *fit = fit_of(m, i);
+		if (!meaning_is_scene(m, i) &&
+			!meaning_is_other(m->sentence->parse, &m->sentence->parse->phrases[i]))
+			is = fmax(is, m->known[i] * fit[o] / fmax(largest(fit, objects_of(m)), 1e-9));
+	}
+	return is;
+}
+
+/* The same by where the anchor is, which is no object. */
+static void add_elsewhere(struct meaning *m, int anchor, const double *fit, double *elsewhere)
+{
+	const struct parse_list *clauses = &m->sentence->parse->phrases[anchor].clauses;
+	double *value = m->scratch + 6 * objects_of(m);
+
+	for (int k = 0; k < clauses->n; k++) {
+		const struct parse_clause *c = &m->sentence->parse->clauses[clauses->item[k]];
+		if (c->negated || !c->anchors.n || c->relation >= PARSE_WITH)
+			continue;
+		const double known = judge_relation(m, anchor, c, fit, value);
+		for (size_t o = 0; o < objects_of(m); o++)
+			elsewhere[o] = fmax(elsewhere[o], ELSEWHERE_WORTH * known * (1 - value[o]));
+	}
+}
+
+/* elsewhere (O): how far an object cannot be where a clause says, though the anchor is nothing here: it is an
+ * anchor itself, or on the desk, and not on the sofa, or not beside what the anchor is beside: "on the sill
+ * by the bed". */
+static void find_elsewhere(
+	struct meaning *m, const struct parse_clause *c, const double *fit, double *elsewhere)
+{
+	const size_t n = objects_of(m);
+	const struct relate_anchor furniture = {.p = m->scratch};
+	const struct relation on = {PARSE_ON, PARSE_PLAIN, RELATE_NARROW, 0, 1, &furniture};
+
+	memset(elsewhere, 0, n * sizeof *elsewhere);
+	for (size_t o = 0; o <= n; o++)
+		m->scratch[o] = o < n && c->relation == PARSE_ON && vocabulary_is_furniture(m->vocabulary, o);
+	if (largest(m->scratch, n) > 0)
+		relate(m->arrangement, &on, fit, m->scratch + 3 * n, elsewhere);
+	for (size_t o = 0; o < n; o++)
+		elsewhere[o] = fmax(ELSEWHERE_WORTH * elsewhere[o], is_anchor(m, c, o));
+	for (int k = 0; k < c->anchors.n; k++)
+		if (m->known[c->anchors.item[k]] < 0.5)
+			add_elsewhere(m, c->anchors.item[k], fit, elsewhere);
 }
 
 /* value (O): how far a clause holds, before what is negated is turned round. said (O) is scratch. */
@@ -211,22 +276,11 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	judge_said(m, c, said);
 	/* nothing is beside what is not here: a denial of it is true */
 	const double unknown = c->negated ? 0 : UNKNOWN_RELATION;
+	double *elsewhere = m->scratch + 8 * n;
+	find_elsewhere(m, c, fit, elsewhere);
 	for (size_t o = 0; o < n; o++)
-		value[o] = fmax(known * value[o] + (1 - known) * unknown, (1 - known) * SAID_WORTH * said[o]);
-}
-
-/* How far an object is itself an anchor of a clause: "not beside the mug" is not said of the mug. */
-static double is_anchor(const struct meaning *m, const struct parse_clause *c, size_t o)
-{
-	double is = 0;
-
-	for (int j = 0; j < c->anchors.n; j++) {
-		const int i = c->anchors.item[j];
-		const double *fit = fit_of(m, i);
-		if (!meaning_is_scene(m, i))
-			is = fmax(is, m->known[i] * fit[o] / fmax(largest(fit, objects_of(m)), 1e-9));
-	}
-	return is;
+		value[o] = fmax(known * value[o] + (1 - known) * unknown * (1 - elsewhere[o]),
+			(1 - known) * SAID_WORTH * said[o]);
 }
 
 /* Whether a clause is so or not: of two things that touch, or that are compared. */

@@ -2,6 +2,7 @@
 #include "ask/constants.h"
 #include "ask/judge_words.h"
 #include "lang/colours.h"
+#include "lang/kinds.h"
 
 #include <math.h>
 #include <string.h>
@@ -54,28 +55,17 @@ static int is_said_of_something(struct meaning *m, int word, double *match)
  * here. */
 static int is_vague(const struct parse_word *w)
 {
-	static const char *const vague[] = {"apparatus", "article", "beauty", "belonging", "bit", "bloke",
-		"buddy", "bugger", "candidate", "chap", "character", "contraption", "critter", "customer",
-		"doobry", "doodad", "doodah", "doofer", "doohickey", "entity", "exhibit", "fella", "fellow",
-		"gadget", "gismo", "gizmo", "gubbins", "guy", "implement", "lad", "mate", "number",
-		"possession", "prop", "specimen", "sucker", "thingamabob", "thingamajig", "thingie",
-		"thingumabob", "thingumajig", "thingummy", "whatchamacallit", "whatnot", "whatsit", "widget",
-		"wotsit", NULL};
-
-	return meaning_word_is(w, vague);
+	return kinds_listed("vague", w->text) || kinds_listed("vague", w->lemma);
 }
 
 /* "The white pebble" is a case: a shape in place of a name, where nothing here is called so. "A power strip"
  * and "a sheet of paper" are names. */
 static int is_shape(const struct parse *p, const struct parse_phrase *f, int head)
 {
-	static const char *const shapes[] = {"blob", "bulge", "bump", "bundle", "capsule", "chunk", "clump",
-		"dollop", "dome", "heap", "hump", "hunk", "lozenge", "lump", "mound", "nub", "nugget",
-		"oblong", "oval", "patch", "pebble", "pill", "pod", "rectangle", "sheet", "shell", "slab",
-		"sliver", "square", "strip", "stub", "wad", "wedge", NULL};
 	static const char *const of[] = {"of", NULL};
 
-	return f->noun.n == 1 && meaning_word_is(&p->words[head], shapes) && !parse_word_is(p, head + 1, of);
+	return f->noun.n == 1 && kinds_listed("shape", p->words[head].lemma) &&
+	       !parse_word_is(p, head + 1, of);
 }
 
 /* "Something orange" is any thing of that colour; "the orange" is a fruit. */

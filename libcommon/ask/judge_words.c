@@ -73,7 +73,7 @@ void judge_said(struct meaning *m, const struct parse_clause *c, double *said)
 		const int head = meaning_head_of(p, &p->phrases[c->anchors.item[k]]);
 		if (head < 0)
 			continue;
-		vocabulary_has(m->vocabulary, m->sentence, head, 1, match);
+		vocabulary_has(m->vocabulary, m->sentence, head, c->relation, match);
 		for (size_t o = 0; o < n; o++)
 			said[o] = fmax(said[o], match[o]);
 	}

@@ -42,10 +42,10 @@ static int is_kept(const struct meaning *m, const struct meaning_part *part)
 	const int is_place = c->relation < PARSE_WITH && c->relation != PARSE_INSIDE;
 	if (!is_place || c->negated || (!c->anchors.n && !is_of_scene))
 		return 0;
+	int known = !c->anchors.n;
 	for (int k = 0; k < c->anchors.n; k++)
-		if (m->known[c->anchors.item[k]] < 0.5 || !p->phrases[c->anchors.item[k]].noun.n)
-			return 0;
-	return 1;
+		known |= m->known[c->anchors.item[k]] >= 0.5 && p->phrases[c->anchors.item[k]].noun.n;
+	return known;
 }
 
 /* use_words marks the words that tell of the use, as a sentence; counts, of these, those that are not of

@@ -15,30 +15,11 @@ void vocabulary_free(struct vocabulary *v)
 {
 	for (size_t r = 0; v->parses && r < v->lifted->sentences; r++)
 		parse_free(&v->parses[r]);
-	free(v->parses);
-	free(v->mean);
-	free(v->sentence_mean);
-	free(v->items);
-	free(v->vectors);
-	free(v->sentences);
-	free(v->kinds);
-	for (size_t o = 0; v->heads && o < v->lifted->objects; o++)
-		free(v->heads[o]);
-	for (size_t o = 0; v->contents && o < v->lifted->objects; o++)
-		free(v->contents[o]);
-	free(v->heads);
-	free(v->contents);
-	free(v->content_kinds);
-	free(v->head_kinds);
-	free(v->scratch);
-	free(v->about);
-	free(v->kin);
-	free(v->word);
-	free(v->other);
-	free(v->line_begin);
-	free(v->line_named);
-	free(v->lines);
-	free(v->cosine);
+	mem_free_strings(v->heads, v->lifted->objects);
+	mem_free_strings(v->contents, v->lifted->objects);
+	mem_free_all(v->parses, v->mean, v->sentence_mean, v->items, v->vectors, v->sentences, v->kinds,
+		v->content_kinds, v->head_kinds, v->scratch, v->about, v->kin, v->word, v->other,
+		v->line_begin, v->line_named, v->lines, v->cosine);
 	things_vectors_free(&v->things);
 	*v = (struct vocabulary){0};
 }
@@ -355,7 +336,11 @@ static int read_names(struct vocabulary *v, struct err *e)
 		v->heads[o] = lower_copy(head, length, e);
 		if (!v->heads[o])
 			return -1;
-		v->contents[o] = lower_copy(before, kinds_hold(v->heads[o]) ? length_before : 0, e);
+		v->contents[o] = lower_copy(before,
+			kinds_listed("holder", v->heads[o]) || kinds_listed("gathering", v->heads[o])
+				? length_before
+				: 0,
+			e);
 		if (!v->contents[o] || add_kind(v, v->heads[o], &v->head_kinds[o], e) ||
 			add_kind(v, v->contents[o], &v->content_kinds[o], e))
 			return -1;

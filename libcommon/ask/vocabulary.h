@@ -86,14 +86,18 @@ void vocabulary_free(struct vocabulary *v);
  * vectors is worth. */
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
+/* Whether an object is, by its name, a piece of furniture. */
+int vocabulary_is_furniture(const struct vocabulary *v, size_t object);
+
 /* match (O): how far an object is said to be what a word says, as an attribute or in any other way, in [0,1];
  * below 0, to -1, where it is said to be the opposite. */
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* match (O) in [0,1]: that a training sentence says that the object has what word w names, a screen of the
- * laptop; with or_place also where it is in any relation to that: on the shelf. */
-void vocabulary_has(
-	struct vocabulary *v, const struct vocabulary_sentence *s, int w, int or_place, double *match);
+ * laptop; with a place also where it is in that relation to it, on the shelf, and less in another.
+ * PARSE_OTHER: no place. */
+void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
+	enum parse_relation place, double *match);
 
 /* match (O): the cosine of the mean of a sentence's words that count (a char of each word) with the nouns
  * that training sentences call an object by, 0 where there is none: what the sentence is about, whatever it
@@ -109,7 +113,7 @@ int vocabulary_for(struct vocabulary *v, const struct vocabulary_sentence *s, co
 
 /* fit (O): how far an object is of the colour of a word, in [0,1], by its Gaussians and by the colours that
  * training sentences say it has. Returns 0 where it is no colour word. */
-int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit);
+int vocabulary_colour(struct vocabulary *v, const struct arrangement *a, const char *word, double *fit);
 
 /* The same of any part of an object. */
 int vocabulary_part_colour(

@@ -6,6 +6,7 @@
 #include "base/logistic.h"
 #include "lang/colours.h"
 #include "lang/finish.h"
+#include "lang/kinds.h"
 #include "lang/naming.h"
 
 #include <math.h>
@@ -43,6 +44,15 @@ static double knowledge(const struct vocabulary *v, const struct naming *word, s
 	return v->has_knowledge ? naming_fits(word, &v->kinds[kind].naming, is_general) : 0;
 }
 
+int vocabulary_is_furniture(const struct vocabulary *v, size_t object)
+{
+	struct wordnet_noun furniture;
+
+	wordnet_find(&furniture, "furniture");
+	return v->has_names && v->has_knowledge &&
+	       wordnet_is_above(&furniture, &v->kinds[v->head_kinds[object]].naming.noun);
+}
+
 /* What one mug is called, another may be called too. match (O) in and out; own (O) is scratch. */
 static void share_kin(const struct vocabulary *v, double *own, double *match)
 {
@@ -64,7 +74,7 @@ static double holds(const struct vocabulary *v, const struct naming *word, size_
 		return 0;
 	const double x =
 		strcmp(word->lemma, content) != 0 ? knowledge(v, word, v->content_kinds[object], 0) : 1;
-	return CONTENT_WORTH * x;
+	return (kinds_listed("gathering", v->heads[object]) ? KIN_WORTH : CONTENT_WORTH) * x;
 }
 
 /* The first word of a noun of two that ends at word w and that is known as one, such as "tea bag"; or -1. */
@@ -217,8 +227,8 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 	add_usual(v, word->lemma, match);
 }
 
-void vocabulary_has(
-	struct vocabulary *v, const struct vocabulary_sentence *s, int w, int or_place, double *match)
+void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
+	enum parse_relation place, double *match)
 {
 	const struct parse_word *word = &s->parse->words[w];
 	const size_t width = (size_t)v->lifted->width;
@@ -227,13 +237,14 @@ void vocabulary_has(
 	memset(match, 0, v->lifted->objects * sizeof *match);
 	for (size_t i = 0; i < v->n && v->has_said; i++) {
 		const struct vocabulary_item *item = &v->items[i];
-		if (item->role != VOCABULARY_ANCHOR || (says_place(item) && !or_place))
+		if (item->role != VOCABULARY_ANCHOR || (says_place(item) && place == PARSE_OTHER))
 			continue;
 		double x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
+		x *= says_place(item) && item->relation != place ? OTHER_PLACE : 1;
 		match[item->object] = fmax(match[item->object], x);
 	}
-	if (!or_place)
+	if (place == PARSE_OTHER)
 		add_usual(v, word->lemma, match);
 }
 
@@ -275,12 +286,14 @@ static void said_colours(const struct vocabulary *v, int colour, double *fit, do
 	}
 }
 
-int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, const char *word, double *fit)
+int vocabulary_colour(struct vocabulary *v, const struct arrangement *a, const char *word, double *fit)
 {
 	const int colour = colour_word(word);
+	struct parts usual; /* of a thing whose colour nobody says: a plant is green */
 
 	if (colour < 0)
 		return 0;
+	parts_of_word(&usual, word);
 	said_colours(v, colour, fit, v->other);
 	/* of several, where another thing is called so, what it is called itself counts more, and what is
 	 * only like the colour is meant less */
@@ -289,6 +302,8 @@ int vocabulary_colour(const struct vocabulary *v, const struct arrangement *a, c
 	for (size_t o = 0; o < a->n; o++) {
 		const double share = a->objects[o].colours[colour];
 		const double looks = share / (share + COLOUR_SHARE);
+		if (!(fit[o] > 0 || v->other[o] > 0) && v->has_names && v->has_knowledge)
+			take_usual(v, v->head_kinds[o], &usual, &fit[o]);
 		fit[o] = fmax(fit[o], looks * (1 - less * v->other[o]));
 		if (is_there && fit[o] < COLOUR_UNLIKE)
 			fit[o] *= fit[o] / COLOUR_UNLIKE;

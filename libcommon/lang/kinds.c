@@ -60,14 +60,12 @@ int kinds_have(const char *lemma)
 	return 0;
 }
 
-int kinds_hold(const char *lemma)
+int kinds_listed(const char *list, const char *lemma)
 {
-	static const char *const containers[] = {"bag", "basket", "bottle", "bowl", "box", "bucket", "can",
-		"carton", "case", "crate", "cup", "glass", "jar", "jug", "mug", "pack", "packet", "pot",
-		"sack", "tin", "tray", "tub", "tube", "vase", NULL};
+	const size_t length = strlen(list);
 
-	for (int i = 0; containers[i]; i++)
-		if (!strcmp(lemma, containers[i]))
+	for (const char *p = first_line(); *p; p = next_line(p))
+		if (!strncmp(p, list, length) && p[length] == '\t' && has(p, lemma))
 			return 1;
 	return 0;
 }

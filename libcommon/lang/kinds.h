@@ -12,8 +12,9 @@ int kinds_next(long *at, char noun[KINDS_LENGTH]);
 /* Whether a lemma is in any group. */
 int kinds_have(const char *lemma);
 
-/* Whether things called so hold others: a jar of tea is a jar, and an eraser box has an eraser. */
-int kinds_hold(const char *lemma);
+/* Whether a lemma is in the line of this name: "holder", "gathering" (a flower bouquet is flowers), "vague",
+ * "shape". */
+int kinds_listed(const char *list, const char *lemma);
 
 /* The chance that what is called by one lemma is called by the other, as their group has it; 0 where they
  * share none. */

@@ -24,7 +24,7 @@ static void take_content(const struct parse *p, struct parse_phrase *f)
 
 	for (int k = 0; k < f->attributes.n && parse_word_is(p, content - 1, of); k++) {
 		int *const word = &f->attributes.item[k];
-		if (*word == content - 2 && kinds_hold(p->words[*word].lemma)) {
+		if (*word == content - 2 && kinds_listed("holder", p->words[*word].lemma)) {
 			f->noun.item[f->noun.n - 1] = *word;
 			*word = content;
 			return;

@@ -12,6 +12,8 @@ static const double sideways_least = 0.65, sideways_soft = 0.1, sideways_else = 
 static const double apart_least = 0.04, apart_soft = 0.03, nearby = 0.3;
 /* A thing's foot this much higher looks as if it were 1 farther. */
 static const double low_is_near = 0.7;
+/* How well what lies on a thing is "above" it, which is rather said of what is apart. */
+static const double on_is_above = 0.6;
 /* A gap that is none, as the undersides of things are seen badly; the gap at which "next to", and the
  * distance at which "far from" is half true. */
 static const double touching = 0.05, next_to = 0.3, far_from = 0.8;
@@ -120,7 +122,7 @@ double pair_fits(const struct arrangement *a, enum parse_relation relation, enum
 	case PARSE_ABOVE:
 		loose = logistic((p->low[2] - q->high[2] + 0.1 * s) / (0.03 * s)) *
 			exp(-pair_distance(p, q) / (0.7 * s));
-		return fmax(pair_stands_on(a, p, q), loose);
+		return fmax(on_is_above * pair_stands_on(a, p, q), loose);
 	case PARSE_ACROSS:
 		return logistic((pair_distance(p, q) / s - far_from) / 0.2);
 	case PARSE_MIDDLE:

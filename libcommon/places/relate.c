@@ -175,8 +175,9 @@ static double alone(const struct arrangement *a, enum parse_relation relation, c
 		return on_half(-place(a, p, 1));
 	case PARSE_BEHIND:
 	case PARSE_FAR:
-	case PARSE_WALL:
 		return on_half(place(a, p, 1));
+	case PARSE_WALL: /* most often behind all, but a room has four */
+		return 0.25 + 0.5 * on_half(place(a, p, 1));
 	case PARSE_ABOVE:
 		return on_half(place(a, p, 2));
 	case PARSE_BELOW:
