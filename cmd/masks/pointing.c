@@ -107,7 +107,7 @@ static int take_place(struct pointing *p, const char **rest, const char *option,
 static int take_clicks(
 	struct pointing *p, const char *text, const char *option, int is_outside, struct err *e)
 {
-	size_t view;
+	size_t view = 0;
 	double at[2];
 	int got = 0;
 
@@ -128,7 +128,7 @@ static int find_boxed(struct pointing *p, int32_t *node, struct err *e)
 {
 	const char *text = p->options->box;
 	SCOPED struct region_shown *shown = mem_alloc((size_t)p->regions.tree.n, sizeof *shown, "regions", e);
-	size_t view;
+	size_t view = 0;
 	double at[4];
 
 	if (!shown || take_place(p, &text, "--box", 4, &view, at, e) < 0)
