@@ -103,18 +103,18 @@ static int put_boxes(struct detector *y, const char *view, int height, int width
 	return 0;
 }
 
+/* Views of these names, whose images are the photographs' paths. */
 static int name_pictures(struct cameras *c, const struct detecting *d, struct err *e)
 {
-	SCOPED const char **images = mem_zalloc(d->count, sizeof *images, "pictures", e);
 	SCOPED char **names = mem_zalloc(d->count, sizeof *names, "pictures", e);
-	int bad = !images || !names || !(c->views = mem_zalloc(d->count, sizeof *c->views, "pictures", e));
+	int bad = !names || !(c->views = mem_zalloc(d->count, sizeof *c->views, "pictures", e)) ||
+		  views_name(d->pictures, d->count, names, "the pictures", e);
 
-	for (; !bad && c->n < d->count; c->n += !bad)
-		bad = !(images[c->n] = c->views[c->n].image = mem_strdup(d->pictures[c->n], e));
-	bad = bad || views_name(images, d->count, names, "the pictures", e);
-	for (size_t i = 0; !bad && i < c->n; i++)
-		c->views[i].name = names[i];
-	return bad ? -1 : 0;
+	for (; c->n < d->count && !bad; c->n++)
+		c->views[c->n].name = names[c->n];
+	for (size_t i = 0; i < c->n && !bad; i++)
+		bad = !(c->views[i].image = mem_strdup(d->pictures[i], e));
+	return -bad;
 }
 
 /* What is looked at: views with a photograph each. */
