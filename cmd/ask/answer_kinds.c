@@ -302,11 +302,13 @@ static int answer_set(struct answer_told *t, struct asking_answer *found, struct
 	return 0;
 }
 
-/* Whether another thing is as likely as the one that is the answer. */
+/* Whether the one thing of an answer is no more likely than not, or another is nearly as likely. */
 static int is_unsure(const struct asking_answer *a)
 {
-	return a->count == 1 && a->runner_up != ASKING_NONE &&
-	       a->probability[a->runner_up] >= as_likely * a->probability[a->things[0]];
+	const double p = a->count == 1 ? a->probability[a->things[0]] : 1;
+
+	return a->count == 1 && a->runner_up != ASKING_NONE && !a->is_by_purpose &&
+	       (p < sure || a->probability[a->runner_up] >= as_likely * p);
 }
 
 int kinds_answer(struct answer_told *t, struct asking_answer *found, struct asking *a,

@@ -52,6 +52,7 @@ struct distance {
 /* What a conversation was about last, for words that point back: "it", "the other one", "and the kettle?". */
 struct talk {
 	size_t thing;		      /* the thing that was answered; ASKING_NONE */
+	char things[CALLING_TEXT];    /* "the mug and the cup": those of an answer of a few; "": it was one */
 	char question[QUESTION_TEXT]; /* that was asked last, as it was understood; "": none */
 };
 

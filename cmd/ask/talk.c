@@ -7,6 +7,8 @@
 
 #include <string.h>
 
+enum { FEW = 4 /* things that "they" may be */ };
+
 /* Whether a thing is named in the question before word i, which then points to that. */
 static int is_named_before(const struct tokens *t, int i)
 {
@@ -60,31 +62,44 @@ static void find_shared(char *const *names, size_t objects, size_t thing, char w
 	*words = 0;
 }
 
-/* What word i points back to, or NULL; *end gets the word behind it. */
-static const char *points_to(const struct tokens *t, int i, const char *name, const char *noun, int *end)
-{
-	static const char *const it[] = {"it", "that", "this", "him", "her", NULL};
-	const int is_one = tokens_is(t, i + 1, "one") || tokens_is(t, i + 1, "thing");
-	const int is_last = i + 1 == t->n, class = tokens_class(t, i + 1);
+/* What a word points back to. */
+struct pointed {
+	const char *article, *to, *tail; /* "the ", "mug", "'s"; to is NULL: nothing */
+	int end;			 /* the word behind it */
+};
 
-	*end = i + 1;
+static struct pointed points_to(
+	const struct tokens *t, int i, const struct talk *talk, const char *name, const char *noun)
+{
+	static const char *const it[] = {"it", "him", "her", NULL};
+	static const char *const that[] = {"that", "this", NULL};
+	static const char *const those[] = {"they", "them", "those", "these", NULL};
+	const int is_one = tokens_is(t, i + 1, "one") || tokens_is(t, i + 1, "thing");
+	const int class = tokens_class(t, i + 1),
+		  is_end = i + 1 == t->n || class == CLOSED_BE || class == CLOSED_CONJUNCTION;
+
 	if (is_named_before(t, i))
-		return NULL;
-	if (tokens_is(t, i, "it") || tokens_is(t, i, "him") || tokens_is(t, i, "her"))
-		return name;
-	if (tokens_is_any(t, i, it) &&
-		(is_one || is_last || class == CLOSED_BE || class == CLOSED_CONJUNCTION)) {
-		*end = i + 1 + is_one;
-		return name;
-	}
-	return *noun && tokens_is(t, i, "one") && i ? noun : NULL;
+		return (struct pointed){.end = i + 1};
+	if (tokens_is(t, i, "its"))
+		return (struct pointed){"the ", name, "'s", i + 1};
+	if (tokens_is_any(t, i, it))
+		return (struct pointed){"the ", name, "", i + 1};
+	if (tokens_is_any(t, i, that) && (is_one || is_end))
+		return (struct pointed){"the ", name, "", i + 1 + is_one};
+	if (*talk->things && tokens_is_any(t, i, those) &&
+		(is_end || class == CLOSED_NUMBER || tokens_is(t, i, "they")))
+		return (struct pointed){"", talk->things, "", i + 1 + (class == CLOSED_NUMBER)};
+	if (*noun && i && tokens_is(t, i, "one"))
+		return (struct pointed){"", noun, "", i + 1};
+	return (struct pointed){.end = i + 1};
 }
 
 /* "no, the other one", "not that one": asks for another thing than the last. */
 static int is_other(const struct tokens *t)
 {
 	static const char *const words[] = {"no", "nope", "not", "the", "that", "this", "it", "i", "mean",
-		"meant", "other", "one", "another", "thing", "wrong", "'s", "n't", NULL};
+		"meant", "other", "one", "another", "thing", "wrong", "'s", "n't", "and", "what", "about",
+		NULL};
 	int is = 0;
 
 	for (int i = 0; i < t->n; i++) {
@@ -136,11 +151,12 @@ int talk_understand(const struct talk *talk, char *const *names, size_t objects,
 		return ask_again(talk, question + t.word[find_again(&t)].span.begin, understood), 0;
 	find_shared(names, objects, talk->thing, noun);
 	for (int i = 0, end; i < t.n && n < QUESTION_TEXT; i = end) {
-		const char *to = points_to(&t, i, names[talk->thing], noun, &end);
-		if (!to)
+		const struct pointed p = points_to(&t, i, talk, names[talk->thing], noun);
+		end = p.end;
+		if (!p.to)
 			continue;
-		n += (size_t)snprintf(understood + n, QUESTION_TEXT - n, "%.*s%s%s",
-			t.word[i].span.begin - from, question + from, to == noun ? "" : "the ", to);
+		n += (size_t)snprintf(understood + n, QUESTION_TEXT - n, "%.*s%s%s%s",
+			t.word[i].span.begin - from, question + from, p.article, p.to, p.tail);
 		from = t.word[end - 1].span.end;
 	}
 	if (n < QUESTION_TEXT)
@@ -155,5 +171,9 @@ void talk_take(struct talk *talk, const struct answer_told *t)
 	if (!a->count)
 		return;
 	talk->thing = a->things[0];
+	*talk->things = 0;
+	for (size_t k = 0, n = 0; k < a->count && a->count > 1 && a->count <= FEW && n < CALLING_TEXT; k++)
+		n += (size_t)snprintf(talk->things + n, CALLING_TEXT - n, "%sthe %s", k ? " and " : "",
+			t->asking->model.lifted.names[a->things[k]]);
 	memcpy(talk->question, t->understood, sizeof talk->question);
 }

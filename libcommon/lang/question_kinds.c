@@ -72,7 +72,7 @@ static int is_break(const struct tokens *t, const char *text, int at)
 	const int from = at ? t->word[at - 1].span.end : 0, to = t->word[at].span.begin;
 
 	for (int k = from; k < to; k++)
-		if (strchr(",.;?!", text[k]))
+		if (strchr(",.;:?!", text[k]))
 			return 1;
 	return 0;
 }
@@ -80,10 +80,13 @@ static int is_break(const struct tokens *t, const char *text, int at)
 /* Whether words say nothing more of what is asked for, before it or behind it. */
 static int are_idle(const struct tokens *t, int begin, int end)
 {
-	static const unsigned idle = 1U << CLOSED_PRONOUN | 1U << CLOSED_AUXILIARY | 1U << CLOSED_REQUEST;
+	static const unsigned idle =
+		1U << CLOSED_PRONOUN | 1U << CLOSED_AUXILIARY | 1U << CLOSED_REQUEST | 1U << CLOSED_ADVERB;
 	static const char *const words[] = {"tell", "say", "know", "wonder", "give", "measure", "compute",
 		"calculate", "ok", "hey", "hi", "hello", "and", "so", "want", "like", "to", "if", "here",
-		"there", "now", "then", "around", "about", "in", "total", "altogether", NULL};
+		"there", "now", "then", "around", "about", "in", "total", "altogether", "roughly",
+		"approximately", "exactly", "need", "find", "out", "see", "check", "just", "well", "sorry",
+		"excuse", "thanks", "whether", "or", "so", NULL};
 
 	for (; begin < end; begin++) {
 		const int class = tokens_class(t, begin);

@@ -21,8 +21,7 @@ static void kinds(void)
 	is("What's here?", QUESTION_LIST, "What's here?", "");
 	is("could you tell me how many mugs there are", QUESTION_NUMBER,
 		"could you tell me how many mugs there are", "");
-	is("please tell me what colour the mug is", QUESTION_WHICH, "please tell me what colour the mug is",
-		"");
+	is("please tell me what colour the mug is", QUESTION_COLOUR, "the mug", "");
 	is("hi, what color is the big mug?", QUESTION_COLOUR, "the big mug", "");
 	is("how high is my mug", QUESTION_HEIGHT, "my mug", "");
 	is("what's left of the mug?", QUESTION_SET, "what's left of the mug?",
