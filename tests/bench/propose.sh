@@ -5,7 +5,8 @@
 # (sparse/0, images, truth.jsonl), by the photographs alone and, with BOXES, by a detector's boxes; in the labelled views for
 # testing, or in all labelled ones where there are none. Without DATA of gs-synth's scenes, by photographs, ten regions a thing.
 # Prints mIoU and the shares of things and views with an IoU of 0.5 and 0.75, for 110 regions and for 40 of which none is in
-# another; and the processor seconds and memory of making 110. KEEP keeps scenes and weights for the next run.
+# another; and the time and memory of making them. Of real scenes also what clicks mean, where `make benches` has built
+# bench_pick beside BIN. KEEP keeps scenes and weights for the next run.
 set -euo pipefail
 export LC_ALL=C
 BIN=$(cd "${BIN:-build/bin}" && pwd)
@@ -17,7 +18,7 @@ keep=${KEEP:-$work}
 weighed() {
 	[ -e "$1/weights" ] && return
 	"$BIN/gs-import" -q --cameras "$4" --images "$5" ${6:+--test-views "$6"} -o "$1/scene" "$3"
-	"$BIN/gs-weigh" -q --scale "$2" --packed --tolerance 0.05 -o "$1/weights.part" "$1/scene"
+	"$BIN/gs-weigh" -q --split all --scale "$2" --packed --tolerance 0.05 -o "$1/weights.part" "$1/scene"
 	mv "$1/weights.part" "$1/weights"
 }
 
@@ -38,6 +39,11 @@ if [ -n "${DATA:-}" ]; then
 		row "${boxes:+boxes, }photographs, nested" "$keep/real" "$DATA/truth.jsonl" "${split:-train}" ${boxes:+--boxes "$boxes"}
 		row "${boxes:+boxes, }photographs, disjoint" "$keep/real" "$DATA/truth.jsonl" "${split:-train}" ${boxes:+--boxes "$boxes"} --disjoint
 	done
+	pick=$BIN/../bench/bench_pick
+	[ ! -x "$pick" ] || [ -z "${BOXES:-}" ] || {
+		"$BIN/pseudomask-propose" --weights "$keep/real/weights" --boxes "$BOXES" --regions "$work/regions" -o /dev/null "$keep/real/scene"
+		"$pick" "$keep/real/scene" "$keep/real/weights" "$work/regions" "$DATA/truth.jsonl"
+	}
 	exit
 fi
 for scene in ${SCENES:-diner toys}; do
