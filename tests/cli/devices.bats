@@ -114,8 +114,8 @@ streams() { commands | grep -vE '^(gs-transform|text-parse|parse-train|feature-q
 maps() { commands | grep -vE '^(gs-train|parse-train|pseudomask-select|mask-import|mask-export|miou-score) '; }
 
 @test "a read error, in files that are read and in those that are mapped" {
-	fails streams '[^ ]+(\.jsonl?|/cameras.txt): Input/output error' FAIL=5 FAIL_READ=0
-	fails streams '[^ ]+(\.jsonl?|/cameras.txt): Input/output error' FAIL=5 FAIL_READ=20
+	fails streams '[^ ]+(\.jsonl?|\.png|/cameras.txt): Input/output error' FAIL=5 FAIL_READ=0
+	fails streams '[^ ]+(\.jsonl?|\.png|/cameras.txt): Input/output error' FAIL=5 FAIL_READ=20
 	fails maps '[^ ]+\.(safetensors|ply): it cannot be read, or was cut short meanwhile' FAIL_MAP=1
 	cp -r "$BATS_FILE_TMPDIR/in" x
 	status=0
