@@ -1,6 +1,5 @@
 /* A lifted scene that is asked one question after the other, with everything loaded once: refer-ask. */
-#ifndef CMD_ASK_ASKING_H
-#define CMD_ASK_ASKING_H
+#pragma once
 
 #include "ask/choose.h"
 #include "base/err.h"
@@ -99,5 +98,3 @@ const char *asking_side(const double centre[3], const double other[3]);
 
 /* The view of that name, the given camera among them; NULL where there is none. */
 const struct camera *asking_view(const struct asking *a, const char *name);
-
-#endif

@@ -1,6 +1,5 @@
 /* Why a sentence means what it means among a scene's objects, or nothing: refer-ask. */
-#ifndef CMD_ASK_EXPLAIN_H
-#define CMD_ASK_EXPLAIN_H
+#pragma once
 
 #include "ask/meaning.h"
 #include "lang/parse.h"
@@ -46,5 +45,3 @@ void explain_refusal(const struct explained *x, char reason[EXPLAIN_REASON]);
  * bowl","name":"bowl","there":0.9}]}; the best EXPLAIN_MOST candidates come first. Or the same as
  * lines of text, where is_json is 0. free() it; NULL where memory is out. */
 char *explain_meaning(const struct explained *x, int is_json);
-
-#endif

@@ -1,6 +1,5 @@
 /* The reply to a question, to a question about a distance, or to a place in a view: refer-ask. */
-#ifndef CMD_ASK_REPLY_H
-#define CMD_ASK_REPLY_H
+#pragma once
 
 #include "base/err.h"
 #include "base/report.h"
@@ -125,5 +124,3 @@ struct reply_options {
  * asking_answer_free(found) after either. */
 int reply_make(struct answer_told *told, struct asking_answer *found, struct asking *a, const char *question,
 	struct talk *talk, const struct reply_options *o, const struct report *to, struct err *e);
-
-#endif

@@ -9,8 +9,7 @@
  * fits best is known to be what is said (its noun, its colours, its relations), and by how many words say
  * something that is said of nothing. A sentence that says only what the thing is for means the one that
  * ask/usage.h finds. All constants are in ask/constants.def. */
-#ifndef ASK_CHOOSE_H
-#define ASK_CHOOSE_H
+#pragma once
 
 #include "ask/meaning.h"
 #include "base/err.h"
@@ -88,5 +87,3 @@ void chooser_free(struct chooser *c);
 /* choose() with what is kept. */
 int choose_with(struct chooser *c, const struct choose_sentence *sentences, size_t n, struct choice *choices,
 	float *probability, char *chosen, const struct choose_watch *watch, struct err *e);
-
-#endif

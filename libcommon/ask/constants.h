@@ -1,7 +1,6 @@
 /* The constants of the choice, by name. constants.def has them; the program that fits them
  * (tests/bench/bench_choice.c) compiles the room with constants that vary. */
-#ifndef ASK_CONSTANTS_H
-#define ASK_CONSTANTS_H
+#pragma once
 
 #ifdef ASK_CONSTANTS_VARY
 #define CONSTANT(name, value) extern double name;
@@ -10,5 +9,3 @@
 #endif
 #include "ask/constants.def"
 #undef CONSTANT
-
-#endif

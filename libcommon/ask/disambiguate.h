@@ -1,7 +1,6 @@
 /* Which lifted object is which: a detector that cannot tell two things that look the same gives each the
  * other's masks as readily as its own, but the training sentences say where each is. */
-#ifndef ASK_DISAMBIGUATE_H
-#define ASK_DISAMBIGUATE_H
+#pragma once
 
 #include "base/err.h"
 #include "geom/camera.h"
@@ -36,5 +35,3 @@ struct disambiguated {
 };
 int disambiguate(struct lifted *l, size_t named, const char *is_fixed, const struct splats *splats,
 	const struct cameras *cameras, const struct parser *parser, struct disambiguated *to, struct err *e);
-
-#endif

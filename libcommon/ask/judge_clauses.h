@@ -1,7 +1,6 @@
 /* Clauses: how what a phrase means stands to its anchors, and in which order of all that fits. The anchors
  * are judged before. */
-#ifndef ASK_JUDGE_CLAUSES_H
-#define ASK_JUDGE_CLAUSES_H
+#pragma once
 
 #include "ask/meaning.h"
 
@@ -10,5 +9,3 @@ void judge_clauses(struct meaning *m, int phrase);
 
 /* What orders those that fit so far: superlatives, comparatives, sides, ordinals. */
 void judge_order(struct meaning *m, int phrase);
-
-#endif

@@ -1,6 +1,5 @@
 /* What the words of a phrase say of each object. */
-#ifndef ASK_JUDGE_WORDS_H
-#define ASK_JUDGE_WORDS_H
+#pragma once
 
 #include "ask/meaning.h"
 
@@ -24,5 +23,3 @@ void judge_part_colours(struct meaning *m, int phrase, const struct parse_clause
 /* What a thing does, is for, or has: any word of it may be said of an object. Returns how far something is
  * known to be so. */
 double judge_predicate(struct meaning *m, const struct parse_clause *c, double *value);
-
-#endif

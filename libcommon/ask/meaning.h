@@ -1,7 +1,6 @@
 /* What was judged of a sentence among a scene's objects: how well each object fits each of its phrases, part
  * by part. */
-#ifndef ASK_MEANING_H
-#define ASK_MEANING_H
+#pragma once
 
 #include "places/arrangement.h"
 #include "ask/vocabulary.h"
@@ -93,5 +92,3 @@ int meaning_is_other(const struct parse *p, const struct parse_phrase *f);
 
 /* The place as a whole, unless something is called so. */
 int meaning_is_scene(const struct meaning *m, int phrase);
-
-#endif

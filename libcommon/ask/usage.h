@@ -2,8 +2,7 @@
  * it: by how near its words are to the uses of such things (lang/things_vectors.h) and to the object's nouns;
  * and by the colours and places that its parse has. The thing is
  * here if the sentence is nearly as near to its uses as to those of all everyday things together. */
-#ifndef ASK_USAGE_H
-#define ASK_USAGE_H
+#pragma once
 
 #include "ask/meaning.h"
 
@@ -13,5 +12,3 @@ double usage_judge(const struct meaning *m, double *score, double *scratch);
 
 /* Whether the parse tells of colours or places besides: "the red thing you drink from". */
 int usage_says_more(const struct meaning *m);
-
-#endif

@@ -1,7 +1,6 @@
 /* The words by which training sentences call each lifted object and say where it is, and how other words
  * match them. */
-#ifndef ASK_VOCABULARY_H
-#define ASK_VOCABULARY_H
+#pragma once
 
 #include "places/arrangement.h"
 #include "base/err.h"
@@ -124,5 +123,3 @@ int vocabulary_part_colour(
  */
 size_t vocabulary_whole(
 	struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match);
-
-#endif

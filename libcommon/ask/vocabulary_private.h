@@ -1,7 +1,6 @@
 /* What the two halves of ask/vocabulary.h share: vocabulary.c makes it, vocabulary_match.c and
  * vocabulary_uses.c ask it. */
-#ifndef ASK_VOCABULARY_PRIVATE_H
-#define ASK_VOCABULARY_PRIVATE_H
+#pragma once
 
 #include "ask/vocabulary.h"
 
@@ -25,5 +24,3 @@ static inline char vocabulary_lower(char c)
 {
 	return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
-
-#endif

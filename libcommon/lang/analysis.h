@@ -3,8 +3,7 @@
  *
  *   "the small mug on the plate": small: predicate (smaller) of the target; mug: target; on: predicate of the
  *   target; plate: anchor of "on". */
-#ifndef LANG_ANALYSIS_H
-#define LANG_ANALYSIS_H
+#pragma once
 
 #include "lang/parse.h"
 #include "lang/tokens.h"
@@ -69,5 +68,3 @@ int parse_apply_rules(struct parse *p, unsigned without, struct err *e);
  * Likewise. */
 int parse_companion(struct parse *p, struct err *e);
 int parse_members(struct parse *p, struct err *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* The one place for closed-class words: what grammar is made of, and the words of place and size. */
-#ifndef LANG_CLOSED_H
-#define LANG_CLOSED_H
+#pragma once
 
 #include "lang/parse.h"
 
@@ -50,5 +49,3 @@ int closed_class_of(const struct parse *p, int word);
 
 /* The relation the other way round: left for right, supports for on. */
 enum parse_relation closed_inverse(enum parse_relation r);
-
-#endif

@@ -1,6 +1,5 @@
 /* Colour words: what each looks like, and how well a colour fits one. */
-#ifndef LANG_COLOURS_H
-#define LANG_COLOURS_H
+#pragma once
 
 /* The number of a colour word, or -1 where it is none. */
 int colour_word(const char *word);
@@ -19,5 +18,3 @@ void colour_call(const double lab[3], double weight, double *share);
 
 /* How far two colour words are words for one colour, in [0,1]. */
 double colour_words_alike(int a, int b);
-
-#endif

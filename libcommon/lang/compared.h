@@ -1,7 +1,6 @@
 /* Words that compare how things look: "darkest", "shinier", "most colourful". English. Sizes and places are
  * closed words (lang/closed.h), and none of these. */
-#ifndef LANG_COMPARED_H
-#define LANG_COMPARED_H
+#pragma once
 
 #include "lang/tokens.h"
 
@@ -25,5 +24,3 @@ enum parse_degree compared_at(const struct tokens *t, int i);
 
 /* What an adjective says of looks. */
 enum compared_look compared_look(const char *adjective);
-
-#endif

@@ -1,8 +1,7 @@
 /* Groups of everyday nouns (kinds.tsv): by which people call things of one shape, such as a block, a cube and
  * a box, or of one look and use, such as a jug and a kettle. WordNet, a hierarchy of senses, does not have
  * them near one another. English. */
-#ifndef LANG_KINDS_H
-#define LANG_KINDS_H
+#pragma once
 
 enum { KINDS_LENGTH = 32 }; /* of the longest noun with its 0 */
 
@@ -19,5 +18,3 @@ int kinds_listed(const char *list, const char *lemma);
 /* The chance that what is called by one lemma is called by the other, as their group has it; 0 where they
  * share none. */
 double kinds_share(const char *a, const char *b);
-
-#endif

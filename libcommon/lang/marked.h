@@ -2,8 +2,7 @@
  * formats/records/marked.md.
  *
  *   "the small/P1:smaller mug/T on/P2:on the plate/A2" */
-#ifndef LANG_MARKED_H
-#define LANG_MARKED_H
+#pragma once
 
 #include "lang/analysis.h"
 
@@ -36,5 +35,3 @@ int marked_take(struct marked *m, const char *line, struct err *e);
 /* What the marks say of the words that tokens_take made of m->text; -1 with *e where they hang in a circle.
  */
 int marked_analyse(const struct marked *m, const struct tokens *t, struct analysis *a, struct err *e);
-
-#endif

@@ -2,8 +2,7 @@
  * evidence is WordNet with how often each sense is meant (lang/wordnet.h), in one direction: what a thing is
  * a kind of names it, a sister and a kind of it do not; the names of one line of the table of things
  * (lang/things.h); and the groups of nouns for things that look alike (lang/kinds.h). */
-#ifndef LANG_NAMING_H
-#define LANG_NAMING_H
+#pragma once
 
 #include "lang/things.h"
 #include "lang/wordnet.h"
@@ -25,5 +24,3 @@ int naming_is_known(const struct naming *n);
 /* The chance that a thing called `known` is also called `word`, in [0,1]. Of a general noun ("pot" of a
  * kettle) only what WordNet has counts: lines and groups are of other things that are called so. */
 double naming_fits(const struct naming *word, const struct naming *known, int is_general);
-
-#endif

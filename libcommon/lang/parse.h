@@ -4,8 +4,7 @@
  *
  * A parse is flat: phrases and clauses are arrays, and refer to one another by index. Phrase 0 is the target;
  * every other phrase is reached from it. formats/records/parses.md shows the same as JSON. */
-#ifndef LANG_PARSE_H
-#define LANG_PARSE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -128,5 +127,3 @@ void parse_list_cut(struct parse_list *list, int end);
 
 /* Whether there is such a word and its text is in a list that ends in NULL. */
 int parse_word_is(const struct parse *p, int word, const char *const *list);
-
-#endif

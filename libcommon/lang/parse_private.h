@@ -1,6 +1,5 @@
 /* What the parts of parse_build share. */
-#ifndef LANG_PARSE_PRIVATE_H
-#define LANG_PARSE_PRIVATE_H
+#pragma once
 
 #include "lang/analysis.h"
 #include "lang/closed.h"
@@ -70,5 +69,3 @@ void parse_counts(struct build *b, int groups);
 
 /* "The second from the left". b->from gets the place word that it counts from. */
 void parse_ordinals(struct build *b);
-
-#endif

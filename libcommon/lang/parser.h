@@ -1,6 +1,5 @@
 /* Takes sentences apart: by grammar alone, or with what was learnt on the encoder's word vectors. */
-#ifndef LANG_PARSER_H
-#define LANG_PARSER_H
+#pragma once
 
 #include "lang/analysis.h"
 
@@ -26,5 +25,3 @@ struct parser_vectors {
  * vectors, or with vectors of another width or encoder than the weights', the grammar alone speaks. */
 int parse_sentence(struct parse *p, const struct parser *parser, const char *text,
 	const struct parser_vectors *v, struct err *e);
-
-#endif

@@ -1,6 +1,5 @@
 /* Learning a parser's weights from sentences with analyses. */
-#ifndef LANG_PARSER_LEARN_H
-#define LANG_PARSER_LEARN_H
+#pragma once
 
 #include "base/rng.h"
 #include "lang/parser_net.h"
@@ -45,5 +44,3 @@ struct parser_learning {
 /* All members of w learn, each by itself from its own start, on several threads at once: Adam, the rate
  * falling to zero. The same bytes for any number of threads. */
 int parser_learn(const struct parser_learning *l, struct parser_weights *w, struct err *e);
-
-#endif

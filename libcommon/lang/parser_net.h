@@ -9,8 +9,7 @@
  *
  * with x the mean of the word's pieces. After Dozat and Manning (2017), "Deep biaffine attention for neural
  * dependency parsing"; ROOT is a j of its own. */
-#ifndef LANG_PARSER_NET_H
-#define LANG_PARSER_NET_H
+#pragma once
 
 #include "lang/analysis.h"
 #include "lang/closed.h"
@@ -106,5 +105,3 @@ void parser_vectors_of_words(const struct tokens *t, const float *vectors, int c
 /* The best analysis that is well formed. *sure gets the mean probability of the roles. */
 void parser_decode(const struct parser_weights *w, const struct parser_batch *b, int sentence,
 	const struct tokens *t, struct analysis *a, double *sure);
-
-#endif

@@ -1,6 +1,5 @@
 /* What everyday things usually are made of and have, by lang/things.h: a laptop has a battery. */
-#ifndef LANG_PARTS_H
-#define LANG_PARTS_H
+#pragma once
 
 enum { PARTS_STEMS = 160 };
 
@@ -18,5 +17,3 @@ void parts_of_word(struct parts *to, const char *lemma);
 
 /* Whether a thing has what a word says. */
 int parts_share(const struct parts *thing, const struct parts *word);
-
-#endif

@@ -1,7 +1,6 @@
 /* Sentences that say what a thing is for, or does, and not what it is: "what you drink from", "for cutting
  * paper". */
-#ifndef LANG_PURPOSE_H
-#define LANG_PURPOSE_H
+#pragma once
 
 #include "lang/parse.h"
 
@@ -11,5 +10,3 @@ int purpose_is_said(const struct parse *p);
 
 /* Whether a word of it tells of the purpose: none of grammar, place or colour. */
 int purpose_is_content(const struct parse *p, int word);
-
-#endif

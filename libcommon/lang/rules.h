@@ -1,6 +1,5 @@
 /* The rules of language, each with a name by which it can be left out. lang/rules.def has them. */
-#ifndef LANG_RULES_H
-#define LANG_RULES_H
+#pragma once
 
 #include "base/list.h"
 
@@ -19,5 +18,3 @@ static inline int rule_counts(unsigned without, enum rule rule)
 
 /* *without of a comma-separated list of names (NULL: none). 0, or -1 and *unknown the first that is none. */
 int rules_without(const char *list, unsigned *without, struct list_name *unknown);
-
-#endif

@@ -1,6 +1,5 @@
 /* Slips of spelling: one letter too many, too few or wrong, or two neighbours the wrong way round. */
-#ifndef LANG_SPELLING_H
-#define LANG_SPELLING_H
+#pragma once
 
 enum { SPELLING_LENGTH = 32 }; /* bytes of a word with its 0; longer ones are left as they are */
 
@@ -13,5 +12,3 @@ int spelling_near(const char *a, const char *b);
  * letter, or of five where WordNet does not know the word as it is. Returns 0 where it is one of these, or a
  * slip of none. */
 int spelling_repair(const char *word, const char *const *known, int known_count, char *right);
-
-#endif

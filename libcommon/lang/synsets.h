@@ -1,7 +1,6 @@
 /* Reading WordNet's synsets (sets of words with one meaning, known by their offset) through libwordnet, for
  * lang/wordnet.c. Only where the program is built with it. */
-#ifndef LANG_SYNSETS_H
-#define LANG_SYNSETS_H
+#pragma once
 
 #ifdef HAVE_WORDNET
 #include <wn.h>
@@ -18,6 +17,4 @@ SynsetPtr synsets_read(int pos, long synset);
 
 /* Steps through what a synset is a kind of, *at being 0 before the first: 1 and *up, or 0 at the end. */
 int synsets_next_up(const Synset *s, int pos, int *at, long *up);
-#endif
-
 #endif

@@ -1,8 +1,7 @@
 /* Everyday things: what people call each, what it is for, and what it is made of and has. English; the table
  * is lang/things.tsv, a line of three fields (names; uses; what it has) for each kind of thing, and a part of
  * the program. */
-#ifndef LANG_THINGS_H
-#define LANG_THINGS_H
+#pragma once
 
 #include <stddef.h>
 #include <stdint.h>
@@ -27,5 +26,3 @@ const char *things_text(int row, enum things_field field, size_t *length);
 
 /* A hash of the whole table (FNV-1a), by which what is made of it says so. */
 uint32_t things_hash(void);
-
-#endif

@@ -3,8 +3,7 @@
  * things that are for it, in whatever words. It is a part of the program: lang/things.vectors, the line
  * "refer.things 1 ENCODER LINES WIDTH HASH" (things_hash of the table) and LINES x WIDTH signed bytes, each
  * line of any length; made by `make -f pipelines/parse.mk things`. */
-#ifndef LANG_THINGS_VECTORS_H
-#define LANG_THINGS_VECTORS_H
+#pragma once
 
 #include "base/err.h"
 
@@ -24,5 +23,3 @@ void things_vectors_free(struct things_vectors *t);
 
 /* cosine (lines) of a direction (width) of length 1 with each. */
 void things_vectors_cosines(const struct things_vectors *t, const float *direction, float *cosine);
-
-#endif

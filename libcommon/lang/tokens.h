@@ -3,8 +3,7 @@
  * Clitics are words of their own ("isn't" is "is" and "n't", "penguin's" is "penguin" and "'s"), also where
  * the apostrophe is left out ("isnt", "wheres"); hyphens part words. Any bytes may come in; what is not ASCII
  * is part of a word. */
-#ifndef LANG_TOKENS_H
-#define LANG_TOKENS_H
+#pragma once
 
 #include "lang/parse.h"
 
@@ -47,5 +46,3 @@ int token_ends(const char *word, const char *tail, size_t stem);
 
 /* Singular of a noun ("boxes", "shelves", "mice"); others as they are. out holds TOKEN_LENGTH bytes. */
 void token_lemma(const char *word, char *out);
-
-#endif

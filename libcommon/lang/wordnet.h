@@ -2,8 +2,7 @@
  * program was built without it, or the database is not installed, nothing is known and the program works on.
  *
  * libwordnet has one set of open files: call from one thread at a time. */
-#ifndef LANG_WORDNET_H
-#define LANG_WORDNET_H
+#pragma once
 
 enum { WORDNET_SENSES = 8, WORDNET_UP = 96 };
 
@@ -41,5 +40,3 @@ int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun
 
 /* Whether the lemma is an adjective that is known. */
 int wordnet_is_adjective(const char *lemma);
-
-#endif

@@ -1,7 +1,6 @@
 /* Where lifted objects are and what they look like, as seen from a viewpoint. What people say of left, right,
  * front and back is meant from there. */
-#ifndef PLACES_ARRANGEMENT_H
-#define PLACES_ARRANGEMENT_H
+#pragma once
 
 #include "places/object_surface.h"
 #include "places/viewpoint.h"
@@ -60,5 +59,3 @@ void arrangement_free(struct arrangement *a);
 /* The logarithm of a length, which may be 0, and the mean of those of a box. */
 double arranged_length(const struct arrangement *a, double length);
 double arranged_bulk(const struct arrangement *a, const struct arranged *o);
-
-#endif

@@ -1,6 +1,5 @@
 /* Where an object begins and ends along an axis. */
-#ifndef PLACES_OBJECT_SPAN_H
-#define PLACES_OBJECT_SPAN_H
+#pragma once
 
 #include "base/quantile.h"
 
@@ -11,5 +10,3 @@ struct object_span {
 /* By where its n > 0 points are, which change places: the middle 80% of their weight, a tenth longer either
  * way; on the upright axis up to the tip of what tapers. middle: of the 80%. */
 struct object_span object_span(struct quantile_item *along, size_t n, int is_upright);
-
-#endif

@@ -1,7 +1,6 @@
 /* What the Gaussians of an object show of its surface: one colour, stripes or spots, and whether it shines.
  * Light and shade are no pattern: they change a colour's brightness alone, and slowly. */
-#ifndef PLACES_OBJECT_SURFACE_H
-#define PLACES_OBJECT_SURFACE_H
+#pragma once
 
 #include "base/err.h"
 
@@ -33,5 +32,3 @@ void surface_set_gloss(struct surface *s, double low, double high);
 
 /* How far a surface has a look (finish_of, lang/finish.h), in [-1,1]; below 0: it has not. */
 double surface_fits(const struct surface *s, int finish);
-
-#endif

@@ -1,6 +1,5 @@
 /* How two things stand to one another, by their boxes: each judgement in [0,1], or a distance. */
-#ifndef PLACES_PAIRS_H
-#define PLACES_PAIRS_H
+#pragma once
 
 #include "lang/parse.h"
 #include "places/arrangement.h"
@@ -25,5 +24,3 @@ double pair_gap(const struct arranged *p, const struct arranged *q);
 
 /* Between their centres, on the ground. */
 double pair_distance(const struct arranged *p, const struct arranged *q);
-
-#endif

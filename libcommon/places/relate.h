@@ -1,8 +1,7 @@
 /* How well each object fits a relation to others, as people mean it from a viewpoint. Every judgement is a
  * number in [0,1] that changes smoothly with where things are, so that a relation that holds by a hair weighs
  * little. */
-#ifndef PLACES_RELATE_H
-#define PLACES_RELATE_H
+#pragma once
 
 #include "places/pairs.h"
 
@@ -36,5 +35,3 @@ void relate_rank(const struct arrangement *a, enum parse_relation from, int k, c
 
 /* The same by a key of the caller's, in units of what is told apart: the smallest is the first. */
 void relate_rank_by(const struct arrangement *a, const double *key, int k, const double *fit, double *out);
-
-#endif

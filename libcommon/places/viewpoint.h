@@ -1,6 +1,5 @@
 /* Where a sentence is said: what left, right, front and behind are seen from. */
-#ifndef PLACES_VIEWPOINT_H
-#define PLACES_VIEWPOINT_H
+#pragma once
 
 #include "geom/camera.h"
 
@@ -25,5 +24,3 @@ int viewpoint_is_same(const struct viewpoint *a, const struct viewpoint *b);
  * 0, or -1 where it is neither. */
 int viewpoint_read(
 	struct viewpoint *v, const char *text, const struct cameras *cameras, const double offset[3]);
-
-#endif
