@@ -130,9 +130,12 @@ static int find_boxed(struct pointing *p, int32_t *node, struct err *e)
 	SCOPED struct region_shown *shown = mem_alloc((size_t)p->regions.tree.n, sizeof *shown, "regions", e);
 	size_t view = 0;
 	double at[4];
+	const int got = shown ? take_place(p, &text, "--box", 4, &view, at, e) : -1;
 
-	if (!shown || take_place(p, &text, "--box", 4, &view, at, e) < 0)
+	if (got < 0)
 		return -1;
+	if (!got || text[strspn(text, " ")])
+		return err_set(e, ERR_USAGE, "--box: '%s' is not VIEW:x0,y0,x1,y1", p->options->box);
 	const struct pointing_view *l = &p->views[view];
 	const double box[4] = {fmin(at[0], at[2]) * l->width, fmin(at[1], at[3]) * l->height,
 		fmax(at[0], at[2]) * l->width, fmax(at[1], at[3]) * l->height};
@@ -162,6 +165,8 @@ static int find_meant(struct pointing *p, struct err *e)
 		if (take_clicks(p, o->points, "--point", 0, e) ||
 			take_clicks(p, o->outside, "--outside", 1, e))
 			return -1;
+		if (!p->click_count)
+			return err_set(e, ERR_USAGE, "--point: '%s' is not VIEW:x,y", o->points);
 		count = region_pick(t, p->regions.score, p->clicks, p->click_count,
 			(int)(o->larger - o->smaller), p->is_in);
 	}

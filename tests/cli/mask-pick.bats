@@ -76,6 +76,10 @@ fails() {
 	fails 2 "--outside, --larger and --smaller go with --point" --regions regions.safetensors --name x --box "$box" --larger 1 scene
 	fails 2 "--point: no view 'other'" --regions regions.safetensors --name x --point other:1,1 scene
 	fails 2 "--point: 'view_001:1' is not VIEW:x,y" --regions regions.safetensors --name x --point view_001:1 scene
+	fails 2 "--point: ' ' is not VIEW:x,y" --regions regions.safetensors --name x --point ' ' scene
+	for box in '' 'view_001:1,1,9,9 view_001:1,1,9,9'; do
+		fails 2 "--box: '$box' is not VIEW:x0,y0,x1,y1" --regions regions.safetensors --name x --box "$box" scene
+	done
 	fails 2 "--point: 96 is outside of view 'view_001', which is 96x72" --regions regions.safetensors --name x --point view_001:96,1 scene
 	fails 4 "none: No such file or directory" --regions none --name x --point "$middle" scene
 }
