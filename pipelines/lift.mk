@@ -9,23 +9,29 @@
 #	make -f pipelines/lift.mk SCENE=work/desk SPLATS=point_cloud.ply CAMERAS=sparse/0 \
 #		MASKS=input_0005.png NAMES=names.txt
 #
+# Or from nothing but photographs: `regions` finds what may be things, by boxes where `make detector` was done, and says how to
+# point at them, which makes the MASKS:
+#
+#	make -f pipelines/lift.mk regions SCENE=work/desk SPLATS=point_cloud.ply CAMERAS=sparse/0 IMAGES=images
+#
 # SCALE       size at which masks are looked at, as a share of the views'; default 0.3333
 # ASK         more sentences to answer, JSON Lines; optional
 # WHOLE       true masks of whole objects, to score those of --amodal against; optional
 # BOXES       true boxes, to score those of refer-locate against; optional
 # RENDER      more options for refer-render, of the predictions and of what is in ASK, with blanks between them
+# DETECTOR    folder of the weights of box-detect, for regions; default: where `make detector` puts them
 # WORDS       1: ends in words, a line for each way, in place of a table
 # The other variables, and the folder's layout, are those of two-stage.mk; both workflows may use one folder where SCALE and
 # WEIGH (here --packed --tolerance 0.05 by default) are the same.
 #
 # Targets: lifted (the model, boxes, and, where there are test views, predictions, overlays and, with TRUTH, scores), report (the
-# same, and the page SCENE/report.html for a browser), and those of two-stage.mk.
+# same, and the page SCENE/report.html for a browser), regions, and those of two-stage.mk.
 
 .DEFAULT_GOAL := lifted
 SCALE ?= 0.3333
 WEIGH ?= --packed --tolerance 0.05
 more_files := ASK WHOLE BOXES
-more := RENDER WORDS
+more := RENDER WORDS DETECTOR
 include $(dir $(lastword $(MAKEFILE_LIST)))two-stage.mk
 
 asked := $(if $(ASK),$(SCENE)/lifted/asked.jsonl)
@@ -85,3 +91,25 @@ $(SCENE)/lifted/overlays/complete: $(model3) $(SCENE)/log/overlay3.command
 	@mkdir -p $(@D)
 	$(call run,overlay3)
 	@touch $@
+
+# Regions that may be things. DETECTOR is the folder of the weights of box-detect; without it photographs alone tell.
+DETECTOR ?= $(wildcard $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/detector)
+boxes := $(if $(DETECTOR),$(SCENE)/boxes.jsonl)
+labels := $(SCENE)/labels.jsonl
+again = make -f $(called) SCENE=$(SCENE) SPLATS=$(SPLATS) $(if $(CAMERAS),CAMERAS=$(CAMERAS) )$(if $(IMAGES),IMAGES=$(IMAGES) )MASKS=$(labels)
+pick = $(call typed,$(if $(BIN),$(BIN)/)mask-pick) --regions $(SCENE)/regions.safetensors --weights $(SCENE)/weights --point VIEW:x,y --name NAME $(SCENE)/scene >>$(labels)
+
+.PHONY: regions
+regions: $(SCENE)/regions.safetensors
+	@printf '%s\n' $(call quote,to name a thing: $(pick)) $(call quote,to lift what is named: $(again))
+
+command.detect = box-detect --model $(call quoted,DETECTOR) --scene $(SCENE)/scene -o $(boxes)
+command.propose = pseudomask-propose --weights $(SCENE)/weights $(if $(boxes),--boxes $(boxes)) --regions $(SCENE)/regions.safetensors \
+	-o $(SCENE)/regions.jsonl $(SCENE)/scene
+$(call track,detect propose)
+
+$(SCENE)/boxes.jsonl: $(scene) $(SCENE)/log/detect.command
+	$(call run,detect)
+
+$(SCENE)/regions.safetensors: $(weights) $(boxes) $(SCENE)/log/propose.command
+	$(call run,propose)

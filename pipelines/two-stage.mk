@@ -36,7 +36,7 @@
 # it starts anew. Names of files and folders may not have blanks or characters that make or the shell give a meaning.
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
-TEST_VIEWS ?= $(if $(MASKS),,every:8)
+TEST_VIEWS ?= $(if $(MASKS)$(filter regions,$(MAKECMDGOALS)),,every:8)
 SCALE ?= 0.25
 ITERATIONS ?= 45000
 SEED ?= 1
@@ -45,13 +45,14 @@ include $(here)common.mk
 $(foreach v,MASKS SENTENCES CANDIDATES,$(call take,$(v)))
 # How the things may be given, for whoever has given none.
 define ways
-$(if $(MASKS),,; the things to find are named in one of three ways:
+$(if $(MASKS),,; the things to find are named in one of four ways:
   MASKS=frame_00041.png NAMES=names.txt           no masks yet: paint each thing of one photograph in a colour of its own, and list colours and names
   MASKS=labels.json                               labels of LabelMe or COCO, or the JSON of a detector such as Grounded-SAM-2; no sentences needed
   SENTENCES=s.jsonl CANDIDATES=candidates.jsonl   sentences, and the masks that a detector found for them
+  make -f pipelines/lift.mk regions ...           nothing at all: finds what may be things, and says how to name them by a click
 for example: make -f $(called) SCENE=work/kitchen SPLATS=point_cloud.ply CAMERAS=sparse/0 MASKS=labels.json)
 endef
-$(call check,SCENE SPLATS $(if $(SENTENCES)$(CANDIDATES),$(if $(MASKS),,SENTENCES CANDIDATES),MASKS),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH $(more_files),IMAGES TEST_VIEWS BERT SCALE \
+$(call check,SCENE SPLATS $(if $(SENTENCES)$(CANDIDATES),$(if $(MASKS),,SENTENCES CANDIDATES),$(if $(filter regions,$(MAKECMDGOALS)),,MASKS)),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH $(more_files),IMAGES TEST_VIEWS BERT SCALE \
 	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN UNDISTORT $(more))
 $(if $(filter stage1 lifted,$(TEACH)),,$(error $(called): TEACH is '$(TEACH)', and stage1 or lifted are what it can be))
 

@@ -141,7 +141,7 @@ not() { ! "$@"; }
 @test "all missing variables are named at once, by the pipeline that was called, and its help says what they are" {
 	run make -f "$ROOT/pipelines/lift.mk"
 	[ "$status" = 2 ]
-	[[ $output == *"$ROOT/pipelines/lift.mk: SCENE SPLATS MASKS not set; the things to find are named in one of three ways:"* ]]
+	[[ $output == *"$ROOT/pipelines/lift.mk: SCENE SPLATS MASKS not set; the things to find are named in one of four ways:"* ]]
 	[[ $output == *"'make -f $ROOT/pipelines/lift.mk help' says what they are."* ]]
 	grep -q '^  MASKS=frame_00041.png NAMES=names.txt ' <<<"$output"
 	grep -q '^  SENTENCES=.* CANDIDATES=' <<<"$output"
@@ -206,4 +206,21 @@ not() { ! "$@"; }
 	grep -qxE 'gs-import \(import\): [0-9]+\.[0-9]+ s' out
 	grep -q "^gs-import: warning: .*no photograph for 6 of 6 views" err
 	imported V=1 | grep -q "'gs-import --cameras"
+}
+
+@test "regions: without masks it says how to name what may be things, and then lifts what was named" {
+	cd "$BATS_TEST_TMPDIR"
+	common=(SCENE=clicked SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" IMAGES="$DATA/images" BIN="$BIN" BERT="$ROOT/tests/golden/bert")
+	make -f "$ROOT/pipelines/lift.mk" regions "${common[@]}" DETECTOR= >said
+	grep -qxF "to lift what is named: make -f $ROOT/pipelines/lift.mk SCENE=clicked SPLATS=$DATA/point_cloud.ply CAMERAS=$DATA/sparse/0 IMAGES=$DATA/images MASKS=clicked/labels.jsonl" said
+	pick=$(sed -n 's/^to name a thing: //p' said)
+	view=$(jq -r '.[0].name' clicked/scene/cameras.json)
+	pick=${pick/VIEW:x,y/$view:48,36}
+	eval "${pick/NAME/thing}"
+	"$BIN/gs-check" clicked/labels.jsonl
+	made=$(stat -c %y clicked/weights/complete)
+	make -f "$ROOT/pipelines/lift.mk" "${common[@]}" MASKS=clicked/labels.jsonl >said
+	# nothing that takes long is done again
+	[ "$(stat -c %y clicked/weights/complete)" = "$made" ]
+	"$BIN/refer-ask" --encoder "$ROOT/tests/golden/bert" clicked "where is the thing?" | grep -q "^thing: "
 }
