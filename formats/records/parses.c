@@ -34,10 +34,11 @@ static void add_span(const struct writer *w, cJSON *o, struct parse_span s)
 static void add_noun(const struct writer *w, cJSON *o, const struct parse_list *noun)
 {
 	size_t length = 1;
+	struct err e;
 
 	for (int i = 0; i < noun->n; i++)
 		length += strlen(w->p->words[noun->item[i]].text) + 1;
-	SCOPED char *text = calloc(length, 1);
+	SCOPED char *text = mem_zalloc(length, 1, "parses", &e);
 	if (!text)
 		return;
 	for (int i = 0, at = 0; i < noun->n; i++)

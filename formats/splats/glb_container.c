@@ -43,10 +43,10 @@ static int next_chunk(const struct glb *f, size_t *at, uint32_t type, const unsi
 
 static int parse_json(struct glb *f, const unsigned char *data, size_t length, struct err *e)
 {
-	SCOPED char *text = malloc(length + 1);
+	SCOPED char *text = mem_alloc(length + 1, 1, f->name, e);
 
 	if (!text)
-		return err_set(e, ERR_SYSTEM, "%s: out of memory", f->name);
+		return -1;
 	memcpy(text, data, length);
 	text[length] = 0;
 	f->root = json_parse(text, length, f->name, e);

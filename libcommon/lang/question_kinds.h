@@ -36,4 +36,3 @@ const char *question_name(enum question_kind kind);
 /* The way-th way to read a question, from 0: 1, or 0 where there is no such way. Way 0 of a text that is of
  * no other kind is QUESTION_WHICH with the text itself. */
 int question_read(struct question_asked *q, const char *text, int way);
-

@@ -85,7 +85,8 @@ static int grow_table(struct bpe *b, struct err *e)
 static int32_t find_joined(const struct bpe *b, const char *left, const char *right)
 {
 	const size_t first = strlen(left), second = strlen(right);
-	SCOPED char *joined = malloc(first + second + 1);
+	struct err e;
+	SCOPED char *joined = mem_alloc(first + second + 1, 1, "merges", &e);
 
 	if (!joined)
 		return -2;
