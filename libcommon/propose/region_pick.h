@@ -1,7 +1,9 @@
 /* A thing that a person points at: the regions of a tree that clicks mean.
  *
- * A click means a region that has its pixel: of those that have no pixel outside, the one with the largest
- * score, and a larger or smaller one where that is asked for. Several clicks mean what any of them does. */
+ * The first click means a region that has its pixel: the one with the largest score, without the pixels
+ * outside where that costs no more than half of the score, and a larger or smaller one where that is asked
+ * for. Each further click on what is missing adds a region, and each outside on what is too much takes one
+ * away: the best that is no larger than the first. */
 #pragma once
 
 #include "propose/region_tree.h"
@@ -12,8 +14,9 @@ struct region_click {
 	int is_outside;
 };
 
-/* is_in (nodes) gets 1 for the nodes of the regions that are meant. larger: so many steps up from each, below
- * 0 down towards the click. Returns how many regions; 0 where no click is on any. */
+/* is_in (nodes) gets 1 for the nodes of the regions that are meant. larger: so many steps up from the first,
+ * below 0 down towards the click. Returns how many regions; 0 where no click is on any, or outside and inside
+ * are one. */
 int32_t region_pick(const struct region_tree *t, const float *score, const struct region_click *clicks,
 	size_t n, int larger, uint8_t *is_in);
 
