@@ -307,7 +307,7 @@ static int is_unsure(const struct asking_answer *a)
 {
 	const double p = a->count == 1 ? a->probability[a->things[0]] : 1;
 
-	return a->count == 1 && a->runner_up != ASKING_NONE && !a->is_by_purpose &&
+	return a->count == 1 && a->runner_up != ASKING_NONE && !a->is_by_purpose && a->there >= sure &&
 	       (p < sure || a->probability[a->runner_up] >= as_likely * p);
 }
 

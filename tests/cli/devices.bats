@@ -10,6 +10,7 @@ setup_file() {
 	"$BATS_TEST_DIRNAME/examples-setup.sh" in "$BIN"
 	(cd in && "$BIN/feature-lift" -q --scene scene --weights weights --masks masks.jsonl -o labels.safetensors &&
 		mv kitchen/lifted/model.safetensors lifted.safetensors && cp lifted.safetensors kitchen/lifted/model.safetensors)
+	(cd in && "$BIN/pseudomask-propose" -q --weights weights --regions regions.safetensors -o /dev/null scene)
 	echo 'the wug/T' >in/marked
 	"${CC:-cc}" -shared -fPIC -o failing.so "$BATS_TEST_DIRNAME/failing.c" -ldl
 }
@@ -36,6 +37,7 @@ commands() {
 		parse-train --sentences -o out marked
 		pseudomask-select -o out candidates.jsonl
 		pseudomask-propose --weights weights -o out scene
+		mask-pick --regions regions.safetensors --weights weights --name box --point view_001:32,24 -o out scene
 		mask-import -o out labels.json
 		mask-export -o out truth.jsonl
 		box-detect --quiet --model detector -o out images/view_001.png

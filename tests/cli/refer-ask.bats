@@ -115,7 +115,7 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 @test "a pipe of twenty questions answers as twenty calls do, in words and in JSON, with blank lines between" {
 	[ "$(wc -l <questions)" = 20 ]
 	for json in "" --json; do
-		while read -r question; do ask $json run "$question" || [ $? = 1 ]; done <questions >one
+		while read -r question; do ask $json run "$question" || case $? in 1 | 5) ;; *) false ;; esac; done <questions >one
 		sed 's/^/  /; a\\' questions | ask $json run >piped || [ $? = 1 ]
 		cmp one piped
 	done
