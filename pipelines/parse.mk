@@ -7,13 +7,13 @@
 #
 # `make -f pipelines/parse.mk things` makes $(OUT)/things.vectors, to become libcommon/lang/things.vectors, with build/bench/fit_things.
 #
-# SEED (1), EPOCHS (16), MEMBERS (2) networks, MARKED and TESTS (pipelines/marked/learn/*.txt*, .../test/*.txt; also as .gz), SOURCE what the
+# SEED (1), EPOCHS (10), MEMBERS (2) networks, MARKED and TESTS (pipelines/marked/learn/*.txt*, .../test/*.txt; also as .gz), SOURCE what the
 # weights say that they were learnt from, BERT the encoder's folder, BIN that of the tools.
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
 OUT ?= work/parse
 SEED ?= 1
-EPOCHS ?= 16
+EPOCHS ?= 10
 MEMBERS ?= 2
 MARKED ?= $(wildcard $(here)marked/learn/*.txt*)
 TESTS ?= $(wildcard $(here)marked/test/*.txt)

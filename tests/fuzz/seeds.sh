@@ -78,7 +78,7 @@ gs-import -q --cameras small/sparse/0 -o small/scene small/point_cloud.ply
 	sed '/^end_header/q; s/^element vertex .*/element vertex 40/' small/point_cloud.ply
 	tail -c 104000 small/point_cloud.ply | head -c 4160
 } >few.ply
-gs-import -q --cameras small/sparse/0 -o few few.ply
+gs-import -q --cameras small/sparse/0 --images small/images -o few few.ply
 gs-weigh -q --split all --scale 0.25 -o few/weights few
 gs-weigh -q --split all --scale 0.25 --packed --tolerance 0.02 -o few/packed few
 gs-weigh -q --split all --scale 0.25 --precision f16 -o few/f16 few
@@ -157,6 +157,8 @@ printf '\211PNG\015\012\032\012\000\000\000\015IHDR\000\000\000\004\000\000\000\
 printf '\377\330\377\333\000C\000\010\006\006\007\006\005\010\007\007\007\011\011\010\012\014\024\015\014\013\013\014\031\022\023\017\024\035\032\037\036\035\032\034\034\040\044\056\047\040\042\054\043\034\034\050\067\051\054\060\061\064\064\064\037\047\071\075\070\062\074\056\063\064\062\377\300\000\013\010\000\002\000\003\001\001\021\000\377\304\000\024\000\001\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000\007\377\304\000\032\020\000\001\005\001\000\000\000\000\000\000\000\000\000\000\000\000\001\000\006\007\067t\261\377\332\000\010\001\001\000\000\077\000O\212\352\366\366A\322\277\377\331' >grey.jpg
 seed image png/view_000/*.png overlay/view_000/*.png small/images/* few-png/*/*.png grey/*/*.png palette.png grey.jpg
 seed lifted some-lifted.safetensors few-lifted.safetensors
+pseudomask-propose -q --weights few/whole --regions regions.safetensors -o /dev/null few
+seed regions regions.safetensors
 seed masks some-masks.jsonl
 seed_cut model 800 some-model.safetensors
 gs-transform -q -o few.glb few.ply
@@ -209,6 +211,8 @@ for target in "$dir"/*/; do
 	merges) set -- merges.c vocab.c ;;
 	npz) set -- npz.c npy.c ;;
 	parser) set -- parser_weights.c ;;
+	points) set -- colmap.c ;;
+	regions) set -- proposed.c ;;
 	ply) set -- ply.c plyfile.c plypacked.c ;;
 	glb | gltf) set -- glb.c glb_container.c ;;
 	colmap) set -- colmap.c colmap_text.c ;;
