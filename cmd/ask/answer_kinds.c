@@ -234,24 +234,47 @@ static void compare(struct answer_told *t, struct asking_answer *found)
 			t->asking->model.lifted.names[loser]);
 }
 
-/* Everything that was lifted, the largest kinds first: "two box, kettle". */
-static int list(struct answer_told *t, struct asking_answer *found, struct err *e)
+/* Everything that was lifted, whatever the question's words mean: they tell only from where it is asked. */
+static int list(struct answer_told *t, struct asking_answer *found, struct asking *a, const struct report *to,
+	struct err *e)
 {
-	const struct asking *a = t->asking;
-	const size_t objects = a->model.lifted.objects;
-
-	if (asking_answer_make(found, objects, e))
+	if (asking_ask(a, t->understood, found, to, e))
 		return -1;
-	for (size_t o = 0; o < objects; o++)
-		if (a->model.extents[o].n) {
+	found->count = 0;
+	found->runner_up = ASKING_NONE;
+	for (size_t o = 0; o < a->model.lifted.objects; o++) {
+		found->probability[o] = a->model.extents[o].n > 0;
+		if (a->model.extents[o].n)
 			found->things[found->count++] = o;
-			found->probability[o] = 1;
-		}
+	}
 	found->there = found->count > 0;
 	snprintf(found->reason, sizeof found->reason, "the model has no objects");
 	say_number(t, found->count);
 	say(t, " thing%s", found->count == 1 ? "" : "s");
 	return 0;
+}
+
+/* Whether a word of size or place is one that two things are compared by. */
+static int is_comparable(int relation)
+{
+	static const unsigned by = 1U << PARSE_LEFT | 1U << PARSE_RIGHT | 1U << PARSE_FRONT |
+				   1U << PARSE_BEHIND | 1U << PARSE_ABOVE | 1U << PARSE_BELOW |
+				   1U << PARSE_NEAR | 1U << PARSE_FAR | 1U << PARSE_LARGER |
+				   1U << PARSE_SMALLER | 1U << PARSE_TALLER | 1U << PARSE_SHORTER |
+				   1U << PARSE_LONGER | 1U << PARSE_WIDER;
+
+	return relation >= 0 && (by >> relation & 1);
+}
+
+/* Nothing is measured of a thing that has no Gaussians. */
+static void need_boxes(const struct answer_told *t, struct asking_answer *found)
+{
+	for (size_t k = 0; k < found->count; k++)
+		if (!t->asking->model.extents[found->things[k]].n) {
+			snprintf(found->reason, sizeof found->reason, "nothing is seen of %.200s",
+				t->asking->model.lifted.names[found->things[k]]);
+			found->count = 0;
+		}
 }
 
 /* Whether the first thing, which is there, is what the second question says. */
@@ -314,11 +337,15 @@ static int is_unsure(const struct asking_answer *a)
 int kinds_answer(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e)
 {
+	if (t->asked.kind == QUESTION_COMPARE && !is_comparable(t->asked.relation)) {
+		t->asked = (struct question_asked){.relation = -1};
+		memcpy(t->asked.text[0], t->understood, sizeof t->asked.text[0]);
+	}
 	const enum question_kind kind = t->asked.kind;
 	const int is_pair = kind == QUESTION_DISTANCE || kind == QUESTION_COMPARE;
 
 	if (kind == QUESTION_LIST)
-		return list(t, found, e);
+		return list(t, found, a, to, e);
 	const int bad = is_pair			   ? answer_pair(t, found, a, to, e)
 			: kind == QUESTION_WHETHER ? answer_whether(t, found, a, to, e)
 			: kind == QUESTION_SET	   ? answer_set(t, found, a, to, e)
@@ -329,6 +356,8 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 		t->is_yes = found->count > 0;
 	if (kind == QUESTION_NUMBER)
 		say_number(t, found->count);
+	if (is_pair || (kind >= QUESTION_HEIGHT && kind <= QUESTION_SIZE))
+		need_boxes(t, found);
 	if (!found->count)
 		return 0;
 	if (kind == QUESTION_DISTANCE)

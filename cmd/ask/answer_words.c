@@ -65,7 +65,7 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 	const size_t nearest = asking_nearest(a, object, &distance);
 
 	fprintf(out, "%s: ", names[object]);
-	if (nearest != ASKING_NONE && t->answer->has_centres)
+	if (nearest != ASKING_NONE)
 		fprintf(out, "%.3g %s %s; ", distance,
 			asking_side(t->answer->centres[object], t->answer->centres[nearest]), names[nearest]);
 	put_belief(t, object, 1, out);

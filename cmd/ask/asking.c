@@ -130,7 +130,6 @@ static void watch(void *data, size_t i, const struct meaning *m)
 	for (size_t o = 0; o < m->arrangement->n; o++)
 		memcpy(w->answer->centres[o], m->arrangement->objects[o].centre,
 			sizeof w->answer->centres[o]);
-	w->answer->has_centres = 1;
 	const struct explained x = {m, m->sentence->parse, w->question};
 	explain_refusal(&x, w->answer->reason);
 	if (w->options->is_explained && !(w->answer->explained = explain_meaning(&x, w->options->is_json)))

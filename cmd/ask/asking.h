@@ -68,7 +68,6 @@ struct asking_answer {
 	double *probability;	     /* (objects) that each is meant, or one of those meant */
 	char reason[EXPLAIN_REASON]; /* of a refusal */
 	double (*centres)[3];	     /* (objects) to the right, away and up, as seen from the viewpoint */
-	int has_centres;
 	double *holds; /* (objects) the least that any part of the question but its noun gives the object, in
 			  [0,1] */
 	/* What the choice knows of the objects; gone with the asking. NULL: nothing was asked */

@@ -86,7 +86,7 @@ static int are_idle(const struct tokens *t, int begin, int end)
 		"calculate", "ok", "hey", "hi", "hello", "and", "so", "want", "like", "to", "if", "here",
 		"there", "now", "then", "around", "about", "in", "total", "altogether", "roughly",
 		"approximately", "exactly", "need", "find", "out", "see", "check", "just", "well", "sorry",
-		"excuse", "thanks", "whether", "or", "so", NULL};
+		"excuse", "thanks", "whether", "or", NULL};
 
 	for (; begin < end; begin++) {
 		const int class = tokens_class(t, begin);

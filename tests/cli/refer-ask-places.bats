@@ -37,6 +37,7 @@ show() {
 		[ "$(ask --box "$view:$right,$bottom,$left,$top" run)" = "$(ask --box "$view:$left,$top,$right,$bottom" run)" ]
 		answer=$(ask --json --point "$view:$(((left + right) / 2)),$(((top + bottom) / 2))" run)
 		jq -e --arg thing "$thing" '.things[0].name == $thing and .things[0].probability > 0.45' <<<"$answer"
+		ask --box "$view:$left,$top,$right,$bottom" run | grep -qE "^$thing: [0-9.]+ [a-z ]+ .*; [0-9]+%"
 	done <things
 	ask --box "$view:-5,-5,500,500" run
 }

@@ -84,6 +84,10 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 	[ "$(kind "how many ${a##* }s do you see?" .number)" = 1 ]
 	[ "$(ask run "what do you see?" | cut -d: -f1)" = "three things" ]
 	[ "$(kind "What is there?" '.things | map(.name) | sort | join("\n")')" = "$(cat things)" ]
+	# where each is, as of a question for it
+	[ "$(kind "what is there?" ".things[] | select(.name == \"$a\") | .nearest.side")" = "$(kind "the $a" '.things[0].nearest.side')" ]
+	# what compares nothing is no comparison
+	[ "$(kind "which is on the $a or the $b?" .kind)" = which ]
 	# the first word of a name is its colour
 	[ "$(kind "what colour is the ${a##* }?" .value)" = "${a%% *}" ]
 	height=$(jq -r --arg a "$a" 'select(.object == $a) | .oriented.size[2]' boxes.jsonl)
