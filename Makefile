@@ -48,7 +48,7 @@ MAN_PAGES := $(wildcard man/*.[137])
 
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
 NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev libdeflate.h=libdeflate-dev \
-	utf8proc.h=libutf8proc-dev webp/decode.h=libwebp-dev zstd.h=libzstd-dev minizip/unzip.h=libminizip-dev $(CC)=gcc ar=binutils
+	utf8proc.h=libutf8proc-dev webp/decode.h=libwebp-dev zstd.h=libzstd-dev minizip/unzip.h=libminizip-dev microhttpd.h=libmicrohttpd-dev $(CC)=gcc ar=binutils
 NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd zstd=zstd pkg-config=pkg-config f2py3=python3-numpy
 NEED_LINT := clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
 
@@ -110,6 +110,7 @@ $(BUILD)/obj/libcommon/synth/wordings.o: libcommon/synth/sentences.tsv libcommon
 
 # So are the page of refer-report and its viewer.
 $(BUILD)/obj/cmd/report/reporting.o: cmd/report/report_page.html
+$(BUILD)/obj/cmd/serve/serve_http.o: cmd/serve/page.html cmd/serve/page.js
 $(BUILD)/obj/cmd/report/report_viewer.o: cmd/report/report_viewer.js
 
 $(LIBRARY): $(OBJECTS)
@@ -130,6 +131,7 @@ $(STATIC): $(PUBLIC) $(LIBRARY)
 	@rm -f $@
 	ar rcs $@ $(@:.a=.o)
 
+$(BUILD)/bin/refer-serve: LDLIBS += -lmicrohttpd -lpthread
 $(BUILD)/bin/%: $(BUILD)/obj/cmd/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)

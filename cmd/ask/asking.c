@@ -8,32 +8,61 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int read_all(struct asking *a, struct err *e)
+/* A model of nothing, of this scene and encoder. */
+static int make_nameless(struct asking *a, struct err *e)
 {
-	const struct run_folder *f = &a->files;
+	struct anymodel *m = &a->model;
+	const struct lifted none = {.gaussians = a->scene.splats.n, .width = encoder_width(&a->encoder)};
 
-	if (run_folder_find(&a->files, a->options->run, &a->options->given, e) ||
-		scene_read(&a->scene, f->scene, e) || anymodel_read(&a->model, f->model, e))
-		return -1;
-	if (!a->model.is_lifted)
-		return err_set(e, ERR_FORMAT, "%s: is a %s; questions need one of refer-lift", f->model,
-			a->model.is_selection ? "selection" : "trained model");
-	return encoder_read(&a->encoder, f->encoder, 0, e);
+	*m = (struct anymodel){.is_lifted = 1, .lifted = none};
+	m->origin = (struct origin){a->scene.fingerprint, a->encoder.fingerprint};
+	m->lifted.indptr = mem_zalloc(1, sizeof *m->lifted.indptr, "objects", e);
+	m->lifted.offsets = mem_zalloc(1, sizeof *m->lifted.offsets, "sentences", e);
+	m->lifted.middle = mem_zalloc(1, sizeof *m->lifted.middle, "words", e);
+	return m->lifted.indptr && m->lifted.offsets && m->lifted.middle
+		       ? parser_weights_default(&m->weights, e)
+		       : -1;
 }
 
-static int check_fit(const struct asking *a, struct err *e)
+static int check_fit(const struct asking *a, const struct anymodel *m, const char *model, struct err *e)
 {
-	const struct lifted *l = &a->model.lifted;
-	const struct origin *o = &a->model.origin;
 	const struct run_folder *f = &a->files;
+	const struct lifted *l = &m->lifted;
 
-	if (anymodel_check_scene(&a->model, f->model, &a->scene, f->scene, e))
+	if (anymodel_check_scene(m, model, &a->scene, f->scene, e))
 		return -1;
 	if (l->width != encoder_width(&a->encoder))
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, the encoder %s makes %d",
-			f->model, l->width, f->encoder, encoder_width(&a->encoder));
-	return parser_weights_need_middle(&a->model.weights, f->model, l->middle, &o->encoder, e) ||
-	       fingerprint_check("encoder", f->model, &o->encoder, f->encoder, &a->encoder.fingerprint, e);
+			model, l->width, f->encoder, encoder_width(&a->encoder));
+	return parser_weights_need_middle(&m->weights, model, l->middle, &m->origin.encoder, e) ||
+	       fingerprint_check(
+		       "encoder", model, &m->origin.encoder, f->encoder, &a->encoder.fingerprint, e);
+}
+
+static int read_model(const struct asking *a, struct anymodel *m, const char *path, struct err *e)
+{
+	if (anymodel_read(m, path, e))
+		return -1;
+	if (!m->is_lifted)
+		return err_set(e, ERR_FORMAT, "%s: is a %s; questions need one of refer-lift", path,
+			m->is_selection ? "selection" : "trained model");
+	return check_fit(a, m, path, e);
+}
+
+static int read_all(struct asking *a, struct err *e)
+{
+	const struct run_folder *f = &a->files;
+	SCOPED_BY(anymodel_free) struct anymodel labels = {0};
+
+	if (run_folder_find(&a->files, a->options->run, &a->options->given, a->options->may_be_nameless, e) ||
+		scene_read(&a->scene, f->scene, e) || encoder_read(&a->encoder, f->encoder, 0, e))
+		return -1;
+	if (f->model ? read_model(a, &a->model, f->model, e) : make_nameless(a, e))
+		return -1;
+	if (!f->labels)
+		return 0;
+	return read_model(a, &labels, f->labels, e) || lifted_add(&a->model.lifted, &labels.lifted, e) ? -1
+												       : 0;
 }
 
 int asking_read_camera(struct asking *a, const char *path, struct err *e)
@@ -80,8 +109,7 @@ static int make_chooser(struct asking *a, struct err *e)
 int asking_open(struct asking *a, const struct asking_options *options, struct err *e)
 {
 	a->options = options;
-	return read_all(a, e) || check_fit(a, e) ||
-			       (options->camera && asking_read_camera(a, options->camera, e)) ||
+	return read_all(a, e) || (options->camera && asking_read_camera(a, options->camera, e)) ||
 			       find_viewpoint(a, e) || make_chooser(a, e) ||
 			       anymodel_place(&a->model, &a->scene, e)
 		       ? -1

@@ -13,13 +13,16 @@
 
 struct run_folder {
 	char *scene, *model, *encoder;
+	char *labels; /* a model of what a person named, beside `model`; NULL: none */
 };
 
-/* The scene, RUN/scene; the lifted model, RUN/lifted/model.safetensors; and the encoder, encoder_default's;
- * but for those of `given` that are not NULL. Copies. ERR_SYSTEM where
- * the folder or one of them is not there: the message says what makes it. Returns 0, or -1 with *e set;
+/* The scene, RUN/scene; the lifted models, RUN/lifted/model.safetensors and, of refer-serve,
+ * RUN/lifted/labels.safetensors, of which one may be missing; and the encoder, encoder_default's; but for
+ * those of `given` that are not NULL. Copies. ERR_SYSTEM where the folder or one of them is not there: the
+ * message says what makes it. With may_be_nameless no model is fine: NULL. Returns 0, or -1 with *e set;
  * run_folder_free after either. */
-int run_folder_find(struct run_folder *f, const char *run, const struct run_folder *given, struct err *e);
+int run_folder_find(struct run_folder *f, const char *run, const struct run_folder *given,
+	int may_be_nameless, struct err *e);
 void run_folder_free(struct run_folder *f);
 
 struct asking_options {
@@ -30,6 +33,7 @@ struct asking_options {
 	const char *without;	   /* PART,... as choose_without takes it; may be NULL */
 	double least;		   /* a question less likely to mean anything is refused */
 	int is_explained, is_json; /* explanations are JSON, else lines of text */
+	int may_be_nameless;	   /* no lifted model is a model of no objects */
 };
 
 struct asking {

@@ -28,13 +28,39 @@ static char *find_part(
 	return NULL;
 }
 
-int run_folder_find(struct run_folder *f, const char *run, const struct run_folder *given, struct err *e)
+/* RUN/lifted/NAME where it is there; else *path is NULL. */
+static int find_lifted(char **path, const char *run, const char *name, struct err *e)
+{
+	if (!(*path = file_join(run, name, "", e)))
+		return -1;
+	if (!file_exists(*path)) {
+		free(*path);
+		*path = NULL;
+	}
+	return 0;
+}
+
+static int find_models(
+	struct run_folder *f, const char *run, const char *given, int may_be_nameless, struct err *e)
+{
+	if (!given && (find_lifted(&f->labels, run, "lifted/labels.safetensors", e) ||
+			      find_lifted(&f->model, run, "lifted/model.safetensors", e)))
+		return -1;
+	if (!f->model && f->labels) {
+		f->model = f->labels;
+		f->labels = NULL;
+	}
+	if (!f->model && !(may_be_nameless && !given))
+		f->model = find_part(run, given, "lifted/model.safetensors", "--model", e);
+	return f->model || (may_be_nameless && !given) ? 0 : -1;
+}
+
+int run_folder_find(struct run_folder *f, const char *run, const struct run_folder *given,
+	int may_be_nameless, struct err *e)
 {
 	*f = (struct run_folder){0};
-	if (check_there(run, e))
-		return -1;
-	if (!(f->scene = find_part(run, given->scene, "scene", "--scene", e)) ||
-		!(f->model = find_part(run, given->model, "lifted/model.safetensors", "--model", e)))
+	if (check_there(run, e) || !(f->scene = find_part(run, given->scene, "scene", "--scene", e)) ||
+		find_models(f, run, given->model, may_be_nameless, e))
 		return -1;
 	f->encoder = given->encoder ? mem_strdup(given->encoder, e) : encoder_default(e);
 	return f->encoder ? 0 : -1;
@@ -42,7 +68,5 @@ int run_folder_find(struct run_folder *f, const char *run, const struct run_fold
 
 void run_folder_free(struct run_folder *f)
 {
-	free(f->scene);
-	free(f->model);
-	free(f->encoder);
+	mem_free_all(f->scene, f->model, f->encoder, f->labels);
 }

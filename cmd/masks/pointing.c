@@ -47,7 +47,7 @@ static int render(const struct pointing *p, size_t at, struct err *e)
 /* The nodes of a view, once. */
 static int look(struct pointing *p, size_t at, struct err *e)
 {
-	const char *folder = p->options->weights ? p->options->weights : "";
+	const char *folder = p->weights ? p->weights : "";
 	struct pointing_view *l = &p->views[at];
 	SCOPED char *path = file_join(folder, p->scene.cameras.views[at].name, ".safetensors", e);
 	SCOPED_BY(weights_close) struct weights w = {0};
@@ -101,7 +101,19 @@ static int take_place(struct pointing *p, const char **rest, const char *option,
 				at[k], text, c->views[*view].width, c->views[*view].height);
 		at[k] /= size;
 	}
-	return look(p, *view, e) ? -1 : 1;
+	return 1;
+}
+
+int pointing_click(struct pointing *p, size_t view, const double at[2], int is_outside, struct err *e)
+{
+	const struct pointing_view *l = &p->views[view];
+
+	if (look(p, view, e) || mem_grow((void **)&p->clicks, &p->click_room, p->click_count + 1,
+					sizeof *p->clicks, "places", e))
+		return -1;
+	const size_t x = (size_t)(at[0] * l->width), y = (size_t)(at[1] * l->height);
+	p->clicks[p->click_count++] = (struct region_click){l->nodes[y * (size_t)l->width + x], is_outside};
+	return 0;
 }
 
 static int take_clicks(
@@ -111,118 +123,126 @@ static int take_clicks(
 	double at[2];
 	int got = 0;
 
-	while (text && (got = take_place(p, &text, option, 2, &view, at, e)) > 0) {
-		const struct pointing_view *l = &p->views[view];
-		const size_t x = (size_t)(at[0] * l->width), y = (size_t)(at[1] * l->height);
-		if (mem_grow((void **)&p->clicks, &p->click_room, p->click_count + 1, sizeof *p->clicks,
-			    "places", e))
+	while (text && (got = take_place(p, &text, option, 2, &view, at, e)) > 0)
+		if (pointing_click(p, view, at, is_outside, e))
 			return -1;
-		p->clicks[p->click_count++] =
-			(struct region_click){l->nodes[y * (size_t)l->width + x], is_outside};
-	}
 	return got;
 }
 
-/* *node: the region whose box is nearest to the given one, -1 for none. */
-static int find_boxed(struct pointing *p, int32_t *node, struct err *e)
+static int nothing_there(struct err *e)
 {
-	const char *text = p->options->box;
-	SCOPED struct region_shown *shown = mem_alloc((size_t)p->regions.tree.n, sizeof *shown, "regions", e);
+	return err_set(e, ERR_CHECK, "no region is there, or each that is has a place outside too");
+}
+
+int pointing_choose(struct pointing *p, int larger, struct err *e)
+{
+	const struct region_tree *t = &p->regions.tree;
+
+	memset(p->is_in, 0, (size_t)t->n);
+	return region_pick(t, p->regions.score, p->clicks, p->click_count, larger, p->is_in)
+		       ? 0
+		       : nothing_there(e);
+}
+
+int pointing_choose_boxed(struct pointing *p, size_t view, const double box[4], struct err *e)
+{
+	const struct region_tree *t = &p->regions.tree;
+	const struct pointing_view *l = &p->views[view];
+	SCOPED struct region_shown *shown = mem_alloc((size_t)t->n, sizeof *shown, "regions", e);
+
+	if (!shown || look(p, view, e) || region_tree_measure(t, l->nodes, l->height, l->width, shown, e))
+		return -1;
+	const double pixels[4] = {fmin(box[0], box[2]) * l->width, fmin(box[1], box[3]) * l->height,
+		fmax(box[0], box[2]) * l->width, fmax(box[1], box[3]) * l->height};
+	const int32_t node = region_pick_box(t, shown, pixels);
+	memset(p->is_in, 0, (size_t)t->n);
+	for (int32_t k = node; node >= 0 && k < t->end[node]; k++)
+		p->is_in[k] = 1;
+	return node >= 0 ? 0 : nothing_there(e);
+}
+
+static int choose_boxed(struct pointing *p, const char *text, struct err *e)
+{
+	const char *rest = text;
 	size_t view = 0;
-	double at[4];
-	const int got = shown ? take_place(p, &text, "--box", 4, &view, at, e) : -1;
+	double box[4];
+	const int got = take_place(p, &rest, "--box", 4, &view, box, e);
 
 	if (got < 0)
 		return -1;
-	if (!got || text[strspn(text, " ")])
-		return err_set(e, ERR_USAGE, "--box: '%s' is not VIEW:x0,y0,x1,y1", p->options->box);
+	if (!got || rest[strspn(rest, " ")])
+		return err_set(e, ERR_USAGE, "--box: '%s' is not VIEW:x0,y0,x1,y1", text);
+	return pointing_choose_boxed(p, view, box, e);
+}
+
+static int choose(struct pointing *p, const struct pointing_options *o, struct err *e)
+{
+	if (o->box)
+		return choose_boxed(p, o->box, e);
+	if (take_clicks(p, o->points, "--point", 0, e) || take_clicks(p, o->outside, "--outside", 1, e))
+		return -1;
+	if (!p->click_count)
+		return err_set(e, ERR_USAGE, "--point: '%s' is not VIEW:x,y", o->points);
+	return pointing_choose(p, (int)(o->larger - o->smaller), e);
+}
+
+int pointing_mask(struct pointing *p, size_t view, struct rle *mask, size_t *area, struct err *e)
+{
+	*mask = (struct rle){0};
+	if (look(p, view, e))
+		return -1;
 	const struct pointing_view *l = &p->views[view];
-	const double box[4] = {fmin(at[0], at[2]) * l->width, fmin(at[1], at[3]) * l->height,
-		fmax(at[0], at[2]) * l->width, fmax(at[1], at[3]) * l->height};
-	if (region_tree_measure(&p->regions.tree, l->nodes, l->height, l->width, shown, e))
-		return -1;
-	*node = region_pick_box(&p->regions.tree, shown, box);
-	return 0;
-}
-
-/* What is meant: p->is_in. ERR_CHECK where nothing is. */
-static int find_meant(struct pointing *p, struct err *e)
-{
-	const struct pointing_options *o = p->options;
-	const struct region_tree *t = &p->regions.tree;
-	int32_t boxed = -1, count = 0;
-
-	p->is_in = mem_zalloc((size_t)t->n, 1, "regions", e);
-	if (!p->is_in)
-		return -1;
-	if (o->box) {
-		if (find_boxed(p, &boxed, e))
-			return -1;
-		for (int32_t k = boxed; boxed >= 0 && k < t->end[boxed]; k++)
-			p->is_in[k] = 1;
-		count = boxed >= 0;
-	} else {
-		if (take_clicks(p, o->points, "--point", 0, e) ||
-			take_clicks(p, o->outside, "--outside", 1, e))
-			return -1;
-		if (!p->click_count)
-			return err_set(e, ERR_USAGE, "--point: '%s' is not VIEW:x,y", o->points);
-		count = region_pick(t, p->regions.score, p->clicks, p->click_count,
-			(int)(o->larger - o->smaller), p->is_in);
-	}
-	return count ? 0
-		     : err_set(e, ERR_CHECK,
-			       "no region is there, or each that is has a place of --outside too");
-}
-
-static int put_view(struct pointing *p, size_t at, FILE *out, struct err *e)
-{
-	struct mask m = {.view = p->scene.cameras.views[at].name,
-		.object = p->options->name,
-		.score = NAN,
-		.visible = NAN};
-	size_t area = 0;
-
-	if (look(p, at, e))
-		return -1;
-	const struct pointing_view *l = &p->views[at];
 	const size_t pixels = (size_t)l->height * (size_t)l->width;
-	SCOPED uint8_t *mask = mem_alloc(pixels, 1, "masks", e);
-	for (size_t k = 0; k < pixels && mask; k++)
-		area += mask[k] = l->nodes[k] >= 0 && p->is_in[l->nodes[k]];
-	if (!mask || !area)
-		return mask ? 0 : -1;
-	p->masks++;
-	const int bad = rle_encode(&m.rle, mask, l->height, l->width, e) || masks_put(out, &m, e);
-	rle_free(&m.rle);
-	return bad ? -1 : 0;
+	SCOPED uint8_t *is_on = mem_alloc(pixels, 1, "masks", e);
+	*area = 0;
+	for (size_t k = 0; k < pixels && is_on; k++)
+		*area += is_on[k] = l->nodes[k] >= 0 && p->is_in[l->nodes[k]];
+	return is_on ? rle_encode(mask, is_on, l->height, l->width, e) : -1;
 }
 
-static int put_all(struct pointing *p, FILE *out, struct err *e)
+static int put_all(struct pointing *p, const char *name, FILE *out, size_t *masks, struct err *e)
 {
-	for (size_t at = 0; at < p->scene.cameras.n; at++)
-		if (put_view(p, at, out, e))
+	size_t area;
+
+	for (size_t at = 0; at < p->scene.cameras.n; at++) {
+		struct mask m = {.view = p->scene.cameras.views[at].name,
+			.object = name,
+			.score = NAN,
+			.visible = NAN};
+		const int bad = pointing_mask(p, at, &m.rle, &area, e) || (area && masks_put(out, &m, e));
+		rle_free(&m.rle);
+		if (bad)
 			return -1;
+		*masks += area > 0;
+	}
 	return 0;
+}
+
+int pointing_open(
+	struct pointing *p, const char *scene, const char *regions, const char *weights, struct err *e)
+{
+	p->weights = weights;
+	if (scene_read(&p->scene, scene, e) || regions_file_read(&p->regions, regions, e) ||
+		fingerprint_check("scene", regions, &p->regions.scene, scene, &p->scene.fingerprint, e))
+		return -1;
+	if (p->regions.tree.gaussians != p->scene.splats.n)
+		return err_file(e, regions, "is of %zu Gaussians, but %s has %zu", p->regions.tree.gaussians,
+			scene, p->scene.splats.n);
+	p->views = mem_zalloc(p->scene.cameras.n, sizeof *p->views, "views", e);
+	p->is_in = mem_zalloc((size_t)p->regions.tree.n, 1, "regions", e);
+	return p->views && p->is_in ? 0 : -1;
 }
 
 int pointing_write(
 	struct pointing *p, const struct pointing_options *options, const struct report *to, struct err *e)
 {
 	struct file_out out;
+	size_t masks = 0;
 
-	p->options = options;
-	if (scene_read(&p->scene, options->scene, e) || regions_file_read(&p->regions, options->tree, e) ||
-		fingerprint_check(
-			"scene", options->tree, &p->regions.scene, options->scene, &p->scene.fingerprint, e))
+	if (pointing_open(p, options->scene, options->tree, options->weights, e) || choose(p, options, e) ||
+		file_out_open(&out, options->output, e))
 		return -1;
-	if (p->regions.tree.gaussians != p->scene.splats.n)
-		return err_file(e, options->tree, "is of %zu Gaussians, but %s has %zu",
-			p->regions.tree.gaussians, options->scene, p->scene.splats.n);
-	p->views = mem_zalloc(p->scene.cameras.n, sizeof *p->views, "views", e);
-	if (!p->views || find_meant(p, e) || file_out_open(&out, options->output, e))
-		return -1;
-	const int bad = file_out_end(&out, put_all(p, out.stream, e), e);
-	report_note(to, 1, "%zu masks", p->masks);
+	const int bad = file_out_end(&out, put_all(p, options->name, out.stream, &masks, e), e);
+	report_note(to, 1, "%zu masks", masks);
 	return bad;
 }

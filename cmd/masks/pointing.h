@@ -5,6 +5,7 @@
 #include "base/report.h"
 #include "formats/scene/proposed.h"
 #include "formats/scene/scene.h"
+#include "mask/rle.h"
 #include "propose/region_pick.h"
 #include "splat/weights_pack.h"
 
@@ -25,7 +26,7 @@ struct pointing_view {
 };
 
 struct pointing {
-	const struct pointing_options *options;
+	const char *weights; /* the folder; NULL: none */
 	struct scene scene;
 	struct regions_file regions;
 	struct weights_room room;
@@ -33,12 +34,29 @@ struct pointing {
 	size_t click_count, click_room;
 	struct region_click *clicks;
 	uint8_t *is_in; /* (nodes) of what is meant */
-	size_t masks;	/* that were written */
 };
 
-/* Finds what is pointed at and writes its mask in each view that shows it; *p is zeroed before. Returns 0, or
- * -1 with *e set: ERR_USAGE where a place is at fault, ERR_CHECK where nothing is there. pointing_free after
- * either. */
+/* Reads the scene, its regions, and nothing yet of its weights, a folder of views or NULL: views without are
+ * rendered. *p is zeroed before. Returns 0, or -1 with *e set; pointing_free after either. */
+int pointing_open(
+	struct pointing *p, const char *scene, const char *regions, const char *weights, struct err *e);
+void pointing_free(struct pointing *p);
+
+/* A click at a place within a view, in shares of its width and height; p->click_count = 0 forgets all. */
+int pointing_click(struct pointing *p, size_t view, const double at[2], int is_outside, struct err *e);
+
+/* p->is_in gets what the clicks mean, so many steps up, or, below 0, down. Returns 0, or -1 with *e set:
+ * ERR_CHECK where nothing is there. */
+int pointing_choose(struct pointing *p, int larger, struct err *e);
+
+/* The same of a box: left, top, right, bottom in shares of the view. */
+int pointing_choose_boxed(struct pointing *p, size_t view, const double box[4], struct err *e);
+
+/* The mask of what is meant in a view, at the size of its weights; its area in *area, 0 where it is not seen.
+ * Returns 0, or -1 with *e set; rle_free after either. */
+int pointing_mask(struct pointing *p, size_t view, struct rle *mask, size_t *area, struct err *e);
+
+/* Finds what the options point at and writes its mask in each view that shows it; as pointing_open. ERR_USAGE
+ * where a place is at fault. */
 int pointing_write(
 	struct pointing *p, const struct pointing_options *options, const struct report *to, struct err *e);
-void pointing_free(struct pointing *p);

@@ -3,6 +3,7 @@
 #include "cmd/report/reporting.h"
 
 #include "base/base64.h"
+#include "base/embed.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "cmd/text/encode.h"
@@ -14,14 +15,6 @@
 
 /* Gaussians of less opacity are not shown: an eye hardly sees them, and they are many. */
 #define REPORT_LEAST_OPACITY 0.03f
-
-struct report_splats {
-	size_t groups;	/* the rest, then each object of the lifted model */
-	size_t *counts; /* (groups) */
-	size_t n;	/* that are shown */
-	uint8_t *bytes; /* (32,n): all first bytes of .splat (formats/splats/splat.md), then all second ones,
-			   ... */
-};
 
 struct shown {
 	size_t gaussian, group;
@@ -103,7 +96,7 @@ static void pack(struct report_splats *to, const struct splats *s, const struct 
 	}
 }
 
-static int report_splats_make(struct report_splats *s, const struct report_run *r, struct err *e)
+int report_splats_make(struct report_splats *s, const struct report_run *r, struct err *e)
 {
 	const struct splats *from = &r->scene.splats;
 	SCOPED size_t *groups = mem_zalloc(from->n, sizeof *groups, "splats", e);
@@ -123,25 +116,16 @@ static int report_splats_make(struct report_splats *s, const struct report_run *
 	return bad ? -1 : 0;
 }
 
-/* At most r->options->splats of them, those that cover most. Lengths keep 15 bits in positions and 7 in
- * sizes, as what is 0 packs well. Returns 0, or -1 with *e set; report_splats_free after either. */
-static void report_splats_free(struct report_splats *s)
+void report_splats_free(struct report_splats *s)
 {
 	mem_free_all(s->counts, s->bytes);
 	*s = (struct report_splats){0};
 }
 
-__asm__(".section .rodata\n"
-	".globl report_viewer_begin\nreport_viewer_begin:\n"
-	".incbin \"cmd/report/report_viewer.js\"\n"
-	".byte 0\n"
-	".previous\n");
-extern const char report_viewer_begin[];
+EMBED(report_viewer, "cmd/report/report_viewer.js");
 
 /* What `make viewer` puts into its folder, by the names under which they import each other. */
-static const struct {
-	const char *name, *file;
-} modules[] = {
+const struct report_module report_modules[REPORT_MODULES] = {
 	{"./three.core.min.js", "three.core.min.js"},
 	{"three", "three.module.min.js"},
 	{"three/addons/postprocessing/Pass.js", "Pass.js"},
@@ -166,11 +150,11 @@ static int put_packed(FILE *out, const char *attributes, const void *bytes, size
 
 static int put_modules(FILE *out, const char *dir, struct err *e)
 {
-	for (size_t k = 0; k < sizeof modules / sizeof *modules; k++) {
-		SCOPED char *path = file_join(dir, modules[k].file, "", e), *bytes = NULL;
+	for (size_t k = 0; k < REPORT_MODULES; k++) {
+		SCOPED char *path = file_join(dir, report_modules[k].file, "", e), *bytes = NULL;
 		char attributes[80];
 		size_t n;
-		snprintf(attributes, sizeof attributes, "data-module=\"%s\"", modules[k].name);
+		snprintf(attributes, sizeof attributes, "data-module=\"%s\"", report_modules[k].name);
 		const int bad =
 			!path || file_read(path, &bytes, &n, e) || put_packed(out, attributes, bytes, n, e);
 		if (bad)
@@ -259,6 +243,18 @@ static int put_licences(struct jsontext *to, const char *dir, struct err *e)
 	return 0;
 }
 
+int report_scene_put(struct jsontext *to, const struct report_run *r, const struct report_splats *s,
+	const char *viewer, struct err *e)
+{
+	jsontext_number(to, "count", (double)s->n);
+	jsontext_number(to, "most", (double)r->options->splats);
+	jsontext_number(to, "all", (double)r->scene.splats.n);
+	jsontext_rounded(to, "least_opacity", (double)REPORT_LEAST_OPACITY);
+	put_groups(to, r, s);
+	put_camera(to, r);
+	return viewer ? put_licences(to, viewer, e) : 0;
+}
+
 static int put_scene(
 	FILE *out, const struct report_run *r, const struct report_splats *s, const char *dir, struct err *e)
 {
@@ -266,13 +262,7 @@ static int put_scene(
 
 	fputs("<script type=\"application/json\" id=\"scene\">", out);
 	jsontext_open(&to, NULL, '{');
-	jsontext_number(&to, "count", (double)s->n);
-	jsontext_number(&to, "most", (double)r->options->splats);
-	jsontext_number(&to, "all", (double)r->scene.splats.n);
-	jsontext_rounded(&to, "least_opacity", (double)REPORT_LEAST_OPACITY);
-	put_groups(&to, r, s);
-	put_camera(&to, r);
-	const int bad = put_licences(&to, dir, e);
+	const int bad = report_scene_put(&to, r, s, dir, e);
 	jsontext_close(&to, '}');
 	fputs("</script>\n", out);
 	return bad;

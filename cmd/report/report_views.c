@@ -17,67 +17,55 @@ struct picture_rgb {
 	uint8_t *rgb;
 };
 
-static int shrink(struct picture_rgb *p, int height, int width, struct err *e)
+static int encode_jpeg(
+	const struct picture_rgb *p, const char *name, uint8_t **bytes, size_t *n, struct err *e)
 {
-	uint8_t *to = shrink_picture(p->rgb, p->height, p->width, height, width, e);
-
-	free(p->rgb);
-	*p = (struct picture_rgb){height, width, to};
-	return to ? 0 : -1;
+	return jpeg_encode(name, p->rgb, p->height, p->width, QUALITY, bytes, n, e);
 }
 
-/* 1 where the view has a photograph that can be read. */
-static int read_photograph(const struct report_run *r, const struct camera *c, struct picture_rgb *p,
+int report_photograph(const char *folder, const struct camera *c, uint8_t **bytes, size_t *n,
 	const struct report *to, struct err *e)
 {
-	SCOPED char *path = c->image ? file_join(r->scene.path, c->image, "", e) : NULL;
-	int found = 0;
+	SCOPED char *path = c->image ? file_join(folder, c->image, "", e) : NULL;
+	struct picture_rgb whole = {0}, p = {c->height, c->width, NULL};
 
-	if (path && file_exists(path)) {
-		found = !warping_read_photograph(c, r->scene.path, 0, &p->rgb, &p->height, &p->width, e);
-		if (!found)
-			report_warn(to, "%s; the view is rendered instead", e->message);
+	if (!path || !file_exists(path))
+		return 0;
+	if (warping_read_photograph(c, folder, 0, &whole.rgb, &whole.height, &whole.width, e)) {
+		report_warn(to, "%s; the view is rendered instead", e->message);
+		return 0;
 	}
-	return found;
+	p.rgb = shrink_picture(whole.rgb, whole.height, whole.width, c->height, c->width, e);
+	const int bad = !p.rgb || encode_jpeg(&p, c->name, bytes, n, e);
+	mem_free_all(whole.rgb, p.rgb);
+	return bad ? -1 : 1;
 }
 
-static int render(const struct report_run *r, const struct camera *c, struct picture_rgb *p, struct err *e)
+int report_rendering(const struct scene *s, const struct camera *c, uint8_t **bytes, size_t *n, struct err *e)
 {
-	const size_t n = 3 * (size_t)c->height * (size_t)c->width;
-	SCOPED_BY(render_release) struct render_view *v = render_prepare(&r->scene.splats, c, e);
-	SCOPED float *rgb = mem_alloc(n, sizeof *rgb, "picture", e);
+	const size_t values = 3 * (size_t)c->height * (size_t)c->width;
+	SCOPED_BY(render_release) struct render_view *v = render_prepare(&s->splats, c, e);
+	SCOPED float *rgb = mem_alloc(values, sizeof *rgb, "picture", e);
+	SCOPED uint8_t *bits = mem_alloc(values, 1, "picture", e);
 	const float black[3] = {0};
 
-	p->rgb = mem_alloc(n, 1, "picture", e);
-	p->height = c->height;
-	p->width = c->width;
-	if (!v || !rgb || !p->rgb || render_colors(v, &r->scene.splats, c, black, rgb, e))
+	if (!v || !rgb || !bits || render_colors(v, &s->splats, c, black, rgb, e))
 		return -1;
-	for (size_t i = 0; i < n; i++)
-		p->rgb[i] = (uint8_t)lrintf(255 * rgb[i]);
-	return 0;
-}
-
-static char *picture_text(const struct picture_rgb *p, const char *name, struct err *e)
-{
-	SCOPED uint8_t *bytes = NULL;
-	size_t n;
-
-	if (jpeg_encode(name, p->rgb, p->height, p->width, QUALITY, &bytes, &n, e))
-		return NULL;
-	char *text = base64_text("data:image/jpeg;base64,", bytes, n, e);
-	return text;
+	for (size_t i = 0; i < values; i++)
+		bits[i] = (uint8_t)lrintf(255 * rgb[i]);
+	return encode_jpeg(&(struct picture_rgb){c->height, c->width, bits}, c->name, bytes, n, e);
 }
 
 static int put_view(struct jsontext *to, const struct report_run *r, const struct camera *c,
 	const struct report *told, struct err *e)
 {
-	struct picture_rgb p = {0};
-	const int is_photograph = read_photograph(r, c, &p, told, e);
-	const int bad = is_photograph ? shrink(&p, c->height, c->width, e) : render(r, c, &p, e);
-	SCOPED char *text = bad ? NULL : picture_text(&p, c->name, e);
+	SCOPED uint8_t *bytes = NULL;
+	size_t n;
+	const int is_photograph = report_photograph(r->scene.path, c, &bytes, &n, told, e);
+	const int bad =
+		is_photograph < 0 || (!is_photograph && report_rendering(&r->scene, c, &bytes, &n, e));
+	SCOPED char *text = bad ? NULL : base64_text("data:image/jpeg;base64,", bytes, n, e);
 
-	free(p.rgb);
 	if (!text)
 		return -1;
 	jsontext_open(to, NULL, '{');

@@ -127,12 +127,47 @@ int report_sentences(
  * named and none has been fetched, which is told. Returns 0, or -1 with *e set. */
 int report_viewer_put(FILE *out, struct report_run *r, const struct report *to, struct err *e);
 
+/* The Gaussians that a viewer shows. */
+struct report_splats {
+	size_t groups;	/* the rest, then each object of the lifted model */
+	size_t *counts; /* (groups) */
+	size_t n;	/* that are shown */
+	uint8_t *bytes; /* (32,n): all first bytes of .splat (formats/splats/splat.md), then all second ones,
+			   ... */
+};
+
+/* At most r->options->splats of them, those that cover most. Lengths keep 15 bits in positions and 7 in
+ * sizes, as what is 0 packs well. Returns 0, or -1 with *e set; report_splats_free after either. */
+int report_splats_make(struct report_splats *s, const struct report_run *r, struct err *e);
+void report_splats_free(struct report_splats *s);
+
+/* What the viewer is told of them, as members of an object: "count", "groups", "camera", ...; `viewer` is the
+ * folder of its modules, NULL where there is none. The objects have places (anymodel_place). Returns 0, or -1
+ * with *e set. */
+int report_scene_put(struct jsontext *to, const struct report_run *r, const struct report_splats *s,
+	const char *viewer, struct err *e);
+
+/* The modules of the viewer by the names of their files, and where they are imported from. */
+struct report_module {
+	const char *name, *file;
+};
+enum { REPORT_MODULES = 5 };
+extern const struct report_module report_modules[REPORT_MODULES];
+extern const char report_viewer_begin[]; /* the script that shows them */
+
 /* Small pictures of views, as they stand in a page. */
 
 /* A list of {"name","split","width","height","photograph","picture"}, one for each view that is shown: its
  * photograph, or the scene rendered where there is none, as a data URI of a JPEG. Warns of photographs that
  * cannot be read. Returns 0, or -1 with *e set. */
 int report_views(struct jsontext *to, const struct report_run *r, const struct report *told, struct err *e);
+
+/* A JPEG of a view, as large as the camera: of its photograph, 1, or 0 where there is none that can be read,
+ * which is told; of the scene, 0. -1 with *e set; free() the bytes. */
+int report_photograph(const char *folder, const struct camera *c, uint8_t **bytes, size_t *n,
+	const struct report *to, struct err *e);
+int report_rendering(
+	const struct scene *s, const struct camera *c, uint8_t **bytes, size_t *n, struct err *e);
 
 /* Writes the page of a run to a file ("-": stdout). Returns 0, or -1 with *e set. */
 int reporting_write(

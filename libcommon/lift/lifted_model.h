@@ -3,7 +3,8 @@
  * the sentences that named the objects, this is a model that answers as a trained one does. */
 #pragma once
 
-#include <stddef.h>
+#include "base/err.h"
+
 #include <stdint.h>
 
 struct lifted {
@@ -39,6 +40,10 @@ const float *lifted_middle(const struct lifted *l, size_t sentence);
 
 /* Only the first objects stay, without the others, which no sentence names. */
 void lifted_cut(struct lifted *l, size_t objects);
+
+/* Adds the objects and sentences of another model of the same scene and encoder, in place of those objects
+ * that have their names. Returns 0, or -1 with *e set and *to as it was. */
+int lifted_add(struct lifted *to, const struct lifted *more, struct err *e);
 
 /* An object's mask in a view is where sum_i w_pi (a_i - cut) > 0: where more than this part of what is
  * seen in the pixel is the object's. Of 0.35, 0.4, 0.45, 0.5 and 0.55, mean mIoU of two synthetic scenes

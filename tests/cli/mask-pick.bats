@@ -59,7 +59,7 @@ fails() {
 	[ "$(pick --point "$middle" --larger 2 | area)" -ge "$plain" ]
 	[ "$(pick --point "$middle" --smaller 2 | area)" -le "$plain" ]
 	[ "$(pick --point "$middle $middle" | area)" = "$plain" ]
-	fails 1 "no region is there, or each that is has a place of --outside too" --regions regions.safetensors --name x \
+	fails 1 "no region is there, or each that is has a place outside too" --regions regions.safetensors --name x \
 		--point "$middle" --outside "$middle" scene
 }
 
