@@ -130,7 +130,7 @@ int serving_ask(struct serving *s, const cJSON *body, struct serving_reply *to, 
 	if (json_string(body, "question", 1, &text, "request", e) < 0 || take_conversation(&q, body, e) ||
 		take_from(&q, body, e))
 		return -1;
-	if (!question_take(&q.question, text) && q.question.fault)
+	if (text[strspn(text, " \t\r\n")] && !question_take(&q.question, text))
 		return err_set(e, ERR_FORMAT, "the question %s", q.question.fault);
 	if (*q.question.text)
 		job.question = q.question.text;

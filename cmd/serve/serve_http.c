@@ -315,8 +315,7 @@ static struct MHD_Daemon *start(struct server *s, int port, struct err *e)
 			(uint16_t)port, NULL, NULL, handle, s, MHD_OPTION_SOCK_ADDR,
 			is_six ? (struct sockaddr *)&six : (struct sockaddr *)&four,
 			MHD_OPTION_CONNECTION_LIMIT, (unsigned)CONNECTIONS, MHD_OPTION_CONNECTION_TIMEOUT,
-			(unsigned)SECONDS_IDLE, MHD_OPTION_NOTIFY_COMPLETED, finish, NULL,
-			MHD_OPTION_LISTENING_ADDRESS_REUSE, 1u, MHD_OPTION_END);
+			(unsigned)SECONDS_IDLE, MHD_OPTION_NOTIFY_COMPLETED, finish, NULL, MHD_OPTION_END);
 	if (!d)
 		err_errno(e, "%s port %d", s->address, port);
 	return d;

@@ -38,6 +38,7 @@ missing_input() {
 		refer-locate --scene none --text none --model none -o out
 		refer-ask -o out none question
 		refer-report -o out none
+		refer-serve none
 		miou-score --truth none none
 		gs-synth --seed 1 -o /dev/null/none
 	END
