@@ -160,10 +160,10 @@ function make_viewer(stage, scene, source) {
 		return loading;
 	}
 
-	async function show(names, text) {
+	async function show(names, text, may_begin = true) {
 		lit = names;
 		words = text;
-		await begin();
+		if (may_begin || loading) await begin();
 		if (three) light();
 	}
 

@@ -4,7 +4,6 @@
 const find = (what, in_ = document) => in_.querySelector(what);
 const known = x => x !== null && x !== undefined;
 const count = (n, one, more = one + 's') => n.toLocaleString('en') + ' ' + (n === 1 ? one : more);
-const same = (a, b) => a.length === b.length && a.every((x, k) => x === b[k]);
 const STRIP = 16; // photographs beneath the large one; an answer is looked for in these
 const DRAG = 6; // pixels of the screen that make a click a line
 const photo = find('#photo'), frame = find('.frame'), overlay = find('.frame canvas'), talk = find('#talk ol'), line = find('#ask input');
@@ -84,8 +83,10 @@ function draw_mask(canvas, mask, width) {
 	if (!w || !h || !share(mask)) return;
 	const context = canvas.getContext('2d'), r = width * dots;
 	const shape = stencil(mask, Math.max(1, Math.floor(mask.width / w)), colour_of(lit.is_preview ? '--mark' : '--mask'));
-	context.fillStyle = lit.is_preview ? '#fff4' : '#fff7';
+	context.fillStyle = colour_of('--veil');
+	context.globalAlpha = lit.is_preview ? .6 : 1;
 	context.fillRect(0, 0, w, h);
+	context.globalAlpha = 1;
 	for (let k = 0; k < 12; k++) context.drawImage(shape, r * Math.cos(Math.PI * k / 6), r * Math.sin(Math.PI * k / 6), w, h);
 	context.globalCompositeOperation = 'destination-out';
 	context.drawImage(shape, 0, 0, w, h);
@@ -170,23 +171,22 @@ function set_strip() {
 	find('select', photo).replaceChildren(...scene.views.map(v => make('option', {value: v.name}, v.name)));
 }
 
-// Those that show most of it first, and the first of them large, unless the one that is there is nearly as good.
+// Those that show most of it first, and the first of them large, unless the one that is there is to stay, or nearly as good.
 function sort_strip(in_view) {
 	const of = s => share(lit.masks.get(s.view.name)), best = [...strip].sort((a, b) => of(b) - of(a));
+	const stays = in_view || of(best[0]) <= 1.3 * share(lit.masks.get(view.name));
+	if (stays) best.sort((a, b) => (b.view === view) - (a.view === view));
 	find('.strip').replaceChildren(...best.map(s => s.button));
 	find('.strip').scrollLeft = 0;
-	if (!in_view && of(best[0]) > 1.3 * share(lit.masks.get(view.name))) set_view(best[0].view).catch(trouble);
+	if (!stays) set_view(best[0].view).catch(trouble);
 }
 
 // Lights things up, in the photographs and in the scene.
 async function show(names, words = '', in_view = false) {
 	if (label) set_mode(false);
 	clear_masks(names, false);
-	for (const e of document.querySelectorAll('.things > span')) {
-		e.classList.toggle('is-shown', names.includes(e.dataset.name));
-		e.classList.toggle('is-one', same(names, [e.dataset.name]));
-	}
-	if (viewer && (viewer.is_begun || names.length)) light(names, words);
+	mark_chips();
+	if (viewer) viewer.show(names, words, innerWidth > 800);
 	if (!names.length) return;
 	const now = lit, waiting = [view, ...strip.map(s => s.view).filter(v => v !== view)];
 	const take = async () => {
@@ -197,11 +197,6 @@ async function show(names, words = '', in_view = false) {
 	};
 	await Promise.all([take(), take()]);
 	if (lit === now) sort_strip(in_view);
-}
-
-function light(names, words) {
-	viewer.is_begun = true;
-	viewer.show(names, words);
 }
 
 // The conversation: the last first.
@@ -436,14 +431,24 @@ function chip(thing) {
 	return e;
 }
 
+function mark_chips() {
+	for (const e of document.querySelectorAll('.things > span')) {
+		e.classList.toggle('is-shown', lit.names.includes(e.dataset.name));
+		e.classList.toggle('is-one', lit.names.join() === e.dataset.name);
+	}
+}
+
+// What is there now; another page may have named something too.
 async function refresh() {
-	const had = scene && scene.revision;
-	scene = await call('/v1/things');
+	const before = scene, now = await call('/v1/things');
+	scene = {...now, views: before ? before.views : now.views};
+	if (before && before.revision === scene.revision) return;
 	find('#mode').hidden = !can_name();
 	find('.things').replaceChildren(...scene.things.map(chip));
 	if (!scene.things.length)
 		find('.things').append(make('p', {class: 'soft'}, can_name() ? 'Nothing has a name yet. Press Label, click a thing in the photograph, and say what it is.' : 'Nothing has a name here.'));
-	if (had !== undefined && had !== scene.revision && viewer) viewer.change(scene);
+	mark_chips();
+	if (viewer) viewer.change(scene);
 }
 
 // Clicks on what is shown.
@@ -494,6 +499,7 @@ function start_viewer() {
 		return reply;
 	};
 	section.hidden = false;
+	document.body.classList.add('has-viewer');
 	if (scene.camera.name) stage.style.backgroundImage = `url("${encodeURI(address({name: scene.camera.name}))}")`;
 	viewer = make_viewer(stage, scene, {
 		splats: async () => (await get('/v1/splats')).arrayBuffer(),
@@ -510,7 +516,7 @@ function start_viewer() {
 		down = null;
 		if (ray) pick(ray, 'Pointed at in the scene');
 	});
-	if (innerWidth > 800) light([], '');
+	if (innerWidth > 800) viewer.begin();
 }
 
 function keys(e) {
@@ -531,6 +537,7 @@ const question_in = hash => hash.startsWith('#q=') ? decodeURIComponent(hash.sli
 async function start() {
 	const token = /^#([0-9a-f]{32})$/.exec(location.hash);
 	if (token) {
+		if (kept.get('token') !== token[1]) kept.set('talk', []);
 		kept.set('token', token[1]);
 		history.replaceState(null, '', location.pathname);
 	}
@@ -547,6 +554,7 @@ async function start() {
 	find('#forget').addEventListener('click', () => forget().catch(trouble));
 	addEventListener('keydown', keys);
 	addEventListener('hashchange', () => { if (question_in(location.hash)) ask(question_in(location.hash)); });
+	addEventListener('focus', () => refresh().catch(trouble));
 	new ResizeObserver(() => { draw_large(); for (const s of strip) draw_mask(s.canvas, lit.masks.get(s.view.name), 1.2); }).observe(frame);
 	follow_photograph();
 	await set_view(scene.views.find(v => v.name === scene.camera.name) || scene.views[0]);
