@@ -44,8 +44,7 @@ static int render(const struct pointing *p, size_t at, struct err *e)
 	return bad ? -1 : find_nodes(p, l, &rows, e);
 }
 
-/* The nodes of a view, once. */
-static int look(struct pointing *p, size_t at, struct err *e)
+int pointing_look(struct pointing *p, size_t at, struct err *e)
 {
 	const char *folder = p->weights ? p->weights : "";
 	struct pointing_view *l = &p->views[at];
@@ -108,8 +107,8 @@ int pointing_click(struct pointing *p, size_t view, const double at[2], int is_o
 {
 	const struct pointing_view *l = &p->views[view];
 
-	if (look(p, view, e) || mem_grow((void **)&p->clicks, &p->click_room, p->click_count + 1,
-					sizeof *p->clicks, "places", e))
+	if (pointing_look(p, view, e) || mem_grow((void **)&p->clicks, &p->click_room, p->click_count + 1,
+						 sizeof *p->clicks, "places", e))
 		return -1;
 	const size_t x = (size_t)(at[0] * l->width), y = (size_t)(at[1] * l->height);
 	p->clicks[p->click_count++] = (struct region_click){l->nodes[y * (size_t)l->width + x], is_outside};
@@ -150,7 +149,8 @@ int pointing_choose_boxed(struct pointing *p, size_t view, const double box[4], 
 	const struct pointing_view *l = &p->views[view];
 	SCOPED struct region_shown *shown = mem_alloc((size_t)t->n, sizeof *shown, "regions", e);
 
-	if (!shown || look(p, view, e) || region_tree_measure(t, l->nodes, l->height, l->width, shown, e))
+	if (!shown || pointing_look(p, view, e) ||
+		region_tree_measure(t, l->nodes, l->height, l->width, shown, e))
 		return -1;
 	const double pixels[4] = {fmin(box[0], box[2]) * l->width, fmin(box[1], box[3]) * l->height,
 		fmax(box[0], box[2]) * l->width, fmax(box[1], box[3]) * l->height};
@@ -189,7 +189,7 @@ static int choose(struct pointing *p, const struct pointing_options *o, struct e
 int pointing_mask(struct pointing *p, size_t view, struct rle *mask, size_t *area, struct err *e)
 {
 	*mask = (struct rle){0};
-	if (look(p, view, e))
+	if (pointing_look(p, view, e))
 		return -1;
 	const struct pointing_view *l = &p->views[view];
 	const size_t pixels = (size_t)l->height * (size_t)l->width;

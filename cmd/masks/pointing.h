@@ -42,6 +42,9 @@ int pointing_open(
 	struct pointing *p, const char *scene, const char *regions, const char *weights, struct err *e);
 void pointing_free(struct pointing *p);
 
+/* Finds the regions of a view, once; what needs them does so itself. Returns 0, or -1 with *e set. */
+int pointing_look(struct pointing *p, size_t view, struct err *e);
+
 /* A click at a place within a view, in shares of its width and height; p->click_count = 0 forgets all. */
 int pointing_click(struct pointing *p, size_t view, const double at[2], int is_outside, struct err *e);
 

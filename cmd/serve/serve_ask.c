@@ -11,7 +11,8 @@ struct asked {
 	struct question question;
 	const char *from; /* a view or x,y,z; NULL: the usual viewpoint */
 	char place[128];
-	const char *conversation; /* NULL: none */
+	const char *conversation;      /* NULL: none */
+	char key[QUESTION_MOST + 300]; /* of the answers that are kept; "": it is not */
 	const char *point, *box;
 	struct camera *ray; /* a camera of one pixel, in place of a view; NULL */
 	struct serving_reply *to;
@@ -93,6 +94,8 @@ static int answer(struct serving *s, void *data, struct err *e)
 		  serving_text_open(&text, e);
 	if (!bad)
 		bad = serving_text_end(&text, put_answer(&told, text.out, e), q->to, e);
+	if (!bad && *q->key)
+		serving_remember(s, q->key, q->to);
 	a->given = (struct cameras){0};
 	return bad;
 }
@@ -134,7 +137,13 @@ int serving_ask(struct serving *s, const cJSON *body, struct serving_reply *to, 
 		return err_set(e, ERR_FORMAT, "the question %s", q.question.fault);
 	if (*q.question.text)
 		job.question = q.question.text;
-	return serving_do(s, &job);
+	if (q.conversation)
+		return serving_do(s, &job);
+	const int length = snprintf(q.key, sizeof q.key, "%s\n%s", q.question.text, q.from ? q.from : "");
+	if (length >= (int)sizeof q.key)
+		*q.key = 0;
+	const int found = *q.key ? serving_recall(s, q.key, to, e) : 0;
+	return found ? (found < 0 ? -1 : 0) : serving_do(s, &job);
 }
 
 static char *print_place(const char *view, const double *x, int n, struct err *e)

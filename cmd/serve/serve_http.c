@@ -343,6 +343,7 @@ int serving_http(struct serving *serving, const struct serving_http *at, FILE *o
 		MHD_stop_daemon(d);
 		return err_errno(e, "stdout");
 	}
+	serving_labels_look(serving);
 	sigwait(&ends, &got);
 	MHD_stop_daemon(d);
 	return 0;

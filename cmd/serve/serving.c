@@ -111,6 +111,7 @@ void serving_close(struct serving *s)
 		pthread_join(s->thread, NULL);
 	}
 	serving_labels_close(s);
+	serving_forget(s);
 	if (s->asking)
 		asking_close(s->asking);
 	cameras_free(&s->cameras);

@@ -41,6 +41,13 @@ struct serving_talk {
 	struct talk talk;
 };
 
+/* Answers to questions that were asked outside of conversations, until the scene changes. */
+enum { SERVING_ANSWERS = 1024 };
+struct serving_cached {
+	char *key, *bytes; /* the question and from where; NULL: none */
+	size_t length;
+};
+
 struct serving {
 	const struct serving_options *options;
 	const struct report *to;
@@ -59,12 +66,15 @@ struct serving {
 	pthread_mutex_t lock; /* of the jobs that wait for it */
 	pthread_cond_t come, done;
 	struct serving_job *first;
+	struct serving_cached answers[SERVING_ANSWERS];
 	int is_ending, is_started;
 
 	pthread_mutex_t labelling; /* who has this labels, alone */
 	int can_click;		   /* regions are there: */
 	struct pointing pointing;
-	char *weights; /* NULL: there are none, and nothing can be labelled */
+	char *weights;	  /* NULL: there are none, and nothing can be labelled */
+	pthread_t looker; /* of serving_labels_look, while */
+	int is_looking;
 };
 
 /* Opens the folder, where the models may be missing as long as nothing has a name. *s is zeroed before, and
@@ -114,8 +124,29 @@ int serving_mask(struct serving *s, const cJSON *body, struct serving_reply *to,
 int serving_label(
 	struct serving *s, const cJSON *body, int may_write, struct serving_reply *to, struct err *e);
 
+/* What a request for a label says. */
+struct serving_label {
+	const char *name, *remove, *rename;
+	size_t view;	    /* of the first place */
+	const cJSON *views; /* whose masks are wanted; NULL: that view's */
+	struct rle outline; /* in that view; runs are NULL where regions are meant */
+};
+
+/* "request: key 'KEY' WHY", ERR_FORMAT. Always -1. */
+int serving_faulty(struct err *e, const char *key, const char *why);
+/* What is meant, from then on: the outline of *l, or s->pointing's regions. The next are of that: its mask in
+ * a view, whose *area is 0 where it is not seen, and the reply with those of l->views. With the labelling.
+ * Each returns 0, or -1 with *e set. */
+int serving_take_place(struct serving *s, const cJSON *body, struct serving_label *l, struct err *e);
+int serving_find_mask(struct serving *s, const struct serving_label *l, size_t view, struct rle *mask,
+	size_t *area, struct err *e);
+int serving_preview(
+	struct serving *s, const struct serving_label *l, struct serving_reply *to, struct err *e);
+
 /* What labels need of the folder, once; serving_labels_close after it. */
 int serving_labels_open(struct serving *s, struct err *e);
+/* Begins to look at all views, so that no click has to wait for that. */
+void serving_labels_look(struct serving *s);
 void serving_labels_close(struct serving *s);
 
 /* The whole of it in HTTP. */
@@ -130,3 +161,10 @@ int serving_http(struct serving *s, const struct serving_http *at, FILE *out, st
 
 /* Lines of JSON from stdin, each with "do", to lines on `out`. Who starts it may write. */
 int serving_lines(struct serving *s, FILE *out, struct err *e);
+
+/* The answer to a key: 1, and a copy of it, 0 where it is not kept, -1 with *e. From any thread. */
+int serving_recall(struct serving *s, const char *key, struct serving_reply *to, struct err *e);
+/* Keeps it in the place of another; for the thread that has the scene. Where memory is out it is not kept. */
+void serving_remember(struct serving *s, const char *key, const struct serving_reply *reply);
+/* All of them; with the lock. */
+void serving_forget(struct serving *s);
