@@ -97,7 +97,7 @@ $(BUILD)/tables/lang/question_kinds.inc: libcommon/lang/question_kinds.tsv
 	@mkdir -p $(@D)
 	awk -F '\t' '!/^#/ { printf "\t{\"%s\", \"%s\", {\"%s\", \"%s\"}},\n", $$1, $$2, $$3, $$4 }' $< >$@
 TABLED := $(patsubst $(BUILD)/tables/%.inc,$(BUILD)/obj/libcommon/%.o,$(TABLES))
-$(TABLED): CPPFLAGS += -I$(BUILD)/tables
+$(TABLED): override CPPFLAGS += -I$(BUILD)/tables
 $(TABLED): $(TABLES)
 
 # So is what is known of everyday things.

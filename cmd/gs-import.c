@@ -14,6 +14,8 @@ static const struct cli_option options[] = {
 	CLI_TEXT("images", &files.images, "DIR", "folder of the photographs, to be named in the scene"),
 	CLI_TEXT("test-views", &files.test_views, "NAMES",
 		"views kept for testing: NAME,... or every:N (default: the camera file's, else none)"),
+	CLI_SWITCH("metres", &files.is_metric,
+		"a unit of SPLATS is a metre, as gs-transform --known makes it: answers then say lengths so"),
 	CLI_SWITCH("undistort", &files.undistort,
 		"where a camera distorts, make the view the pinhole of the same view, and keep the lens beside it"),
 	{0},

@@ -10,8 +10,11 @@ dir=$(mktemp -d)
 trap 'rm -rf "$dir"' EXIT
 "$here/cli/examples-setup.sh" "$dir" "$bin" || exit 1
 passed=0 failed=0
+printf '%s\n' '{"do":"ask","question":"where is the box?"}' '{"do":"pick","view":"view_001","x":30,"y":20}' '{"do":"things"}' \
+	'{"do":"label","outline":{"view":"view_001","points":[[1,1],[20,1],[20,20]]},"name":"cup"}' '{"do":"label","remove":"cup"}' >"$dir/requests"
+cp -r "$dir/weights" "$dir/kitchen"
 while read -r line; do
-	if (cd "$dir" && "$@" "$bin"/$line >/dev/null); then
+	if (cd "$dir" && "$@" "$bin"/$line >/dev/null <requests); then
 		passed=$((passed + 1))
 	else
 		failed=$((failed + 1))
@@ -39,6 +42,7 @@ done <<-'END'
 	mask-export -q --scene scene --png tree -o coco.json masks.jsonl
 	refer-train -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl --init lifted.safetensors --init-iterations 2 --iterations 4 --hold-out 0.2 -o model3.safetensors
 	text-parse -q -o parses.jsonl text.safetensors
+	refer-serve -q --stdio --encoder encoder kitchen
 	miou-score --truth truth.jsonl pred.jsonl
 	miou-score --csv --truth truth.jsonl --bootstrap 20 --compare masks2.jsonl --parses parses.jsonl --whole whole.jsonl pred.jsonl
 END

@@ -172,6 +172,7 @@ static void say_size(struct answer_told *t)
 	const struct asking *a = t->asking;
 	const size_t thing = t->answer->things[0];
 	const double own = length_of(t, thing, t->asked.kind), *half = box_of(t, thing)->half;
+	char text[3][LENGTH_TEXT];
 	size_t like = ASKING_NONE;
 	double least = INFINITY;
 
@@ -183,9 +184,11 @@ static void say_size(struct answer_told *t)
 		}
 	}
 	if (t->asked.kind == QUESTION_SIZE)
-		say(t, "%.3g x %.3g x %.3g high", 2 * half[0], 2 * half[1], 2 * half[2]);
+		say(t, "%s x %s x %s high", answer_length(a, 2 * half[0], text[0]),
+			answer_length(a, 2 * half[1], text[1]), answer_length(a, 2 * half[2], text[2]));
 	else
-		say(t, "%.3g %s", own, t->asked.kind == QUESTION_HEIGHT ? "high" : "wide");
+		say(t, "%s %s", answer_length(a, own, text[0]),
+			t->asked.kind == QUESTION_HEIGHT ? "high" : "wide");
 	if (like != ASKING_NONE)
 		say(t, ", %.2g times the %s of %s", own / length_of(t, like, t->asked.kind),
 			length_name(t->asked.kind), a->model.lifted.names[like]);
@@ -219,6 +222,7 @@ static double compared_by(const struct answer_told *t, size_t object, enum quest
 /* The winner of two comes first, and stays alone. */
 static void compare(struct answer_told *t, struct asking_answer *found)
 {
+	char text[LENGTH_TEXT];
 	enum question_kind kind;
 	const double x = compared_by(t, found->things[0], &kind), y = compared_by(t, found->things[1], &kind);
 	const int is_second = y > x;
@@ -228,7 +232,7 @@ static void compare(struct answer_told *t, struct asking_answer *found)
 	found->count = 1;
 	found->runner_up = loser;
 	if (kind == QUESTION_WHICH)
-		say(t, "by %.3g", fabs(x - y));
+		say(t, "by %s", answer_length(t->asking, fabs(x - y), text));
 	else
 		say(t, "%.2g times the %s of %s", fabs(is_second ? y / x : x / y), length_name(kind),
 			t->asking->model.lifted.names[loser]);

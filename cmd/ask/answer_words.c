@@ -3,6 +3,7 @@
 #include "base/jsontext.h"
 #include "base/number.h"
 
+#include <math.h>
 #include <string.h>
 
 static void put_percent(FILE *out, double p)
@@ -47,6 +48,17 @@ static void put_belief(const struct answer_told *t, size_t object, int with_next
 	put_percent(out, t->answer->probability[second]);
 }
 
+const char *answer_length(const struct asking *a, double x, char text[LENGTH_TEXT])
+{
+	if (!a->scene.is_metric)
+		snprintf(text, LENGTH_TEXT, "%.3g", x);
+	else if (fabs(x) < 0.995)
+		snprintf(text, LENGTH_TEXT, "%.*f cm", fabs(x) < 0.0995, 100 * x);
+	else
+		snprintf(text, LENGTH_TEXT, "%.2f m", x);
+	return text;
+}
+
 static void put_box(const struct answer_told *t, size_t object, FILE *out)
 {
 	const struct asking *a = t->asking;
@@ -61,12 +73,13 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 {
 	const struct asking *a = t->asking;
 	char **names = a->model.lifted.names;
+	char length[LENGTH_TEXT];
 	double distance;
 	const size_t nearest = asking_nearest(a, object, &distance);
 
 	fprintf(out, "%s: ", names[object]);
 	if (nearest != ASKING_NONE)
-		fprintf(out, "%.3g %s %s; ", distance,
+		fprintf(out, "%s %s %s; ", answer_length(a, distance, length),
 			asking_side(t->answer->centres[object], t->answer->centres[nearest]), names[nearest]);
 	put_belief(t, object, 1, out);
 	if (a->model.extents[object].n && t->is_verbose)
@@ -87,17 +100,51 @@ int answer_is_no(const struct answer_told *t)
 	return !t->answer->count || (is_yes_or_no(t) && !t->is_yes);
 }
 
+/* The length of a name without the number that tells it from others: "mug 2". */
+static int kind_length(const char *name)
+{
+	const size_t n = strcspn(name, "0123456789"), rest = strlen(name + n);
+
+	return (int)(n > 1 && rest && name[n - 1] == ' ' && strspn(name + n, "0123456789") == rest
+			     ? n - 1
+			     : n + rest);
+}
+
+/* Things by their names, where several of a kind are told apart by numbers together: "mug (3), plate". */
+static void put_kinds(const struct answer_told *t, FILE *out)
+{
+	char **names = t->asking->model.lifted.names;
+	const struct asking_answer *a = t->answer;
+	const char *separator = ": ";
+
+	for (size_t k = 0; k < a->count; k++) {
+		const char *name = names[a->things[k]];
+		const int length = kind_length(name);
+		size_t first = a->count, n = 0;
+		for (size_t i = 0; i < a->count; i++) {
+			const char *other = names[a->things[i]];
+			if (kind_length(other) != length || strncmp(other, name, (size_t)length) != 0)
+				continue;
+			first = n++ ? first : i;
+		}
+		if (first != k)
+			continue;
+		fprintf(out, n > 1 ? "%s%.*s (%zu)" : "%s%.*s", separator, length, name, n);
+		separator = ", ";
+	}
+}
+
 /* What was asked, then the things on one line: "two: brown box 91%, kettle 88%". */
 static void put_value(const struct answer_told *t, const char *value, FILE *out)
 {
 	char **names = t->asking->model.lifted.names;
+	const int is_list = t->asked.kind == QUESTION_LIST;
 
 	fputs(value, out);
-	for (size_t k = 0; k < t->answer->count; k++) {
-		fprintf(out, "%s%s", k ? ", " : ": ", names[t->answer->things[k]]);
-		if (t->asked.kind == QUESTION_LIST)
-			continue;
-		fputc(' ', out);
+	if (is_list)
+		put_kinds(t, out);
+	for (size_t k = 0; k < t->answer->count && !is_list; k++) {
+		fprintf(out, "%s%s ", k ? ", " : ": ", names[t->answer->things[k]]);
 		put_belief(t, t->answer->things[k], 0, out);
 	}
 	if (answer_is_no(t) && *t->answer->reason)
@@ -106,7 +153,6 @@ static void put_value(const struct answer_told *t, const char *value, FILE *out)
 	fputc('\n', out);
 }
 
-/* "the mug or the cup? 19% each" */
 static void put_choice(const struct answer_told *t, FILE *out)
 {
 	char **names = t->asking->model.lifted.names;
@@ -124,17 +170,17 @@ static void put_choice(const struct answer_told *t, FILE *out)
 static void put_distance(const struct answer_told *t, FILE *out)
 {
 	const size_t *ends = t->answer->things;
-	char **names = t->asking->model.lifted.names;
+	char **names = t->asking->model.lifted.names, length[LENGTH_TEXT];
 
 	for (int k = 0; k < 2; k++) {
 		fprintf(out, k ? " to %s " : "%s ", names[ends[k]]);
 		put_percent(out, t->answer->probability[ends[k]]);
 	}
 	if (t->distance.gap > 0)
-		fprintf(out, ": %.3g between their boxes", t->distance.gap);
+		fprintf(out, ": %s between their boxes", answer_length(t->asking, t->distance.gap, length));
 	else
 		fputs(": their boxes touch", out);
-	fprintf(out, ", %.3g between their centres", t->distance.centres);
+	fprintf(out, ", %s between their centres", answer_length(t->asking, t->distance.centres, length));
 	put_view(t, out);
 	fputc('\n', out);
 }
@@ -245,6 +291,8 @@ int answer_put_json(const struct answer_told *t, FILE *out, struct err *e)
 		if (strcmp(t->understood, t->question) != 0)
 			jsontext_string(to, "understood", t->understood);
 	}
+	if (t->asking->scene.is_metric)
+		jsontext_string(to, "unit", "m");
 	jsontext_flag(to, "answered", a->count > 0);
 	if (is_yes_or_no(t))
 		jsontext_flag(to, "yes", t->is_yes);

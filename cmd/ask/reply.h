@@ -100,6 +100,11 @@ int answer_put_json(const struct answer_told *t, FILE *out, struct err *e);
 /* Whether the answer is no, none, or that nothing is meant. */
 int answer_is_no(const struct answer_told *t);
 
+/* A length of the scene as a person says it: "21 cm", "1.35 m", or, where nobody said what a unit is, its
+ * number. Returns text. */
+enum { LENGTH_TEXT = 32 };
+const char *answer_length(const struct asking *a, double x, char text[LENGTH_TEXT]);
+
 /* The shortest answer, for a caption: "kettle 97%, bottle 92%", or "nothing here". Cut to fit. */
 void answer_caption(const struct answer_told *t, char *to, size_t room);
 

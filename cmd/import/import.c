@@ -235,6 +235,7 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	if (move(s, o->splats, cameras, &found->near, to, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
+	s->is_metric = o->is_metric;
 	SCOPED char *metadata = describe_options(o->test_views, e);
 	return -(!metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
 		 photographs_find(&s->cameras, o->images, folder, &found->missing, e) ||

@@ -54,6 +54,7 @@ struct import_options {
 	const char *cameras;	/* a file, or a folder that has one; NULL: beside splats */
 	const char *images;	/* folder of the photographs; NULL: none */
 	const char *test_views; /* NAME,... or every:N; NULL: the camera file's */
+	int is_metric;		/* a unit of the splats is a metre */
 	int undistort;		/* take the pinholes of cameras that distort, which are refused else */
 };
 

@@ -53,7 +53,8 @@ static int take_fingerprint(struct scene *s, const struct safetensors *st, struc
 
 static int take_splats(struct scene *s, const struct safetensors *st, struct err *e)
 {
-	const char *offset = safetensors_meta(st, "offset"), *near = safetensors_meta(st, "near");
+	const char *offset = safetensors_meta(st, "offset"), *near = safetensors_meta(st, "near"),
+		   *unit = safetensors_meta(st, "unit");
 	const struct st_tensor *t[5];
 	char after;
 
@@ -78,6 +79,9 @@ static int take_splats(struct scene *s, const struct safetensors *st, struct err
 	if (near && (sscanf(near, "%lf%c", &s->splats.near, &after) != 1 || !(s->splats.near > 0) ||
 			    !isfinite(s->splats.near)))
 		return err_file(e, st->path, "metadata 'near' is not a number above 0");
+	if (unit && strcmp(unit, "m") != 0)
+		return err_file(e, st->path, "metadata 'unit' is '%s', expected 'm'", unit);
+	s->is_metric = unit != NULL;
 	float *to[5] = {
 		s->splats.means, s->splats.scales, s->splats.quats, s->splats.opacities, s->splats.sh};
 	for (int i = 0; i < 5; i++)
@@ -295,6 +299,8 @@ static int write_splats(const struct scene *s, const char *path, const char *opt
 	arrays_out_text(&out, "scene", own.hex);
 	if (p->near != SPLATS_NEAR)
 		arrays_out_text(&out, "near", arrays_out_print(&out, "%.17g", p->near));
+	if (s->is_metric)
+		arrays_out_text(&out, "unit", "m");
 	arrays_out_put(&out, st_matrix("means", ST_F32, n, 3, p->means));
 	arrays_out_put(&out, st_matrix("scales", ST_F32, n, 3, p->scales));
 	arrays_out_put(&out, st_matrix("quats", ST_F32, n, 4, p->quats));

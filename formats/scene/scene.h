@@ -13,6 +13,7 @@ struct scene {
 	struct fingerprint fingerprint; /* of splats.means; set by the readers */
 	struct cameras cameras;
 	double offset[3]; /* world = means + offset: what the import subtracted */
+	int is_metric;	  /* a unit is a metre; else nobody said what it is */
 };
 
 /* Reads and checks both files. Messages name the file and the tensor or key. */

@@ -75,6 +75,24 @@ setup() {
 # kind QUESTION: what jq says of the answer in JSON, whatever the status
 kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 
+@test "lengths are said in metres where the scene's units are metres, and what is alike is counted" {
+	a=$(sed -n 1p things) b=$(sed -n 2p things)
+	mkdir -p metres/lifted
+	"$BIN/gs-import" -q --metres --images images -o metres/scene point_cloud.ply
+	grep -a -q '"unit":"m"' metres/scene/splats.safetensors
+	# two things of one name but for the number
+	jq -c --arg a "$a" --arg b "$b" '.object |= if . == $a then "mug" elif . == $b then "mug 2" else . end' truth.jsonl >mugs.jsonl
+	"$BIN/text-encode" -q --model encoder --names -o mugs.safetensors mugs.jsonl
+	"$BIN/refer-lift" -q --names masks --scene metres/scene --weights weights --text mugs.safetensors --masks mugs.jsonl \
+		-o metres/lifted/model.safetensors
+	[[ "$(ask metres "what is there?")" =~ ^"three things: ".*"mug (2)" ]]
+	[ "$(ask --json metres "what is there?" | jq -r '.unit, .number, (.things | length)' | paste -sd' ')" = "m 3 3" ]
+	[[ "$(ask metres "how tall is the $(sed -n 3p things)?")" =~ ^[0-9.]+" "(cm|m)" high" ]]
+	sed 's/"unit":"m"/"unit":"k"/' metres/scene/splats.safetensors >other.safetensors
+	run "$BIN/gs-check" other.safetensors
+	[ "$status" = 1 ] && [[ "$output" == *"metadata 'unit' is 'k', expected 'm'"* ]]
+}
+
 @test "each kind of question gets its kind of answer" {
 	a=$(sed -n 1p things) b=$(sed -n 2p things)
 	[ "$(ask run "is there a ${a##* }?" | cut -d' ' -f1-3)" = "yes: $a" ]

@@ -25,7 +25,7 @@ LIBFUZZER :=
 FUZZ_MAIN := $(if $(LIBFUZZER),,plain mutate)
 $(BUILD)/fuzz/reader: $(BUILD)/obj/tests/fuzz/reader.o $(FUZZ_MAIN:%=$(BUILD)/obj/tests/fuzz/%.o) $(LIBRARY)
 	@mkdir -p $(@D)
-	$(LINK) $(LIBFUZZER) -o $@ $^ $(LDLIBS)
+	$(LINK) $(LIBFUZZER) -o $@ $^ $(LDLIBS) -lpthread
 
 $(BUILD)/fuzz/reader-%: $(BUILD)/fuzz/reader
 	@ln -f $< $@

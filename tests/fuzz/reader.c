@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "cmd/check/check.h"
 #include "cmd/import/import.h"
+#include "cmd/serve/serving.h"
 #include "formats/arrays/npy.h"
 #include "formats/arrays/npz.h"
 #include "formats/arrays/safetensors.h"
@@ -21,6 +22,7 @@
 #include "formats/records/annotations.h"
 #include "formats/records/boxes.h"
 #include "formats/records/detections.h"
+#include "formats/records/json.h"
 #include "formats/records/masks.h"
 #include "formats/records/sentences.h"
 #include "formats/scene/checkpoint.h"
@@ -268,6 +270,29 @@ static void try_npz(const char *path)
 	npz_close(&z);
 }
 
+/* A request to refer-serve, as --stdio has it, of the folder in REFERSPLAT_FUZZ_RUN. It may not write. */
+static void try_requests(const char *path)
+{
+	static struct serving s;
+	static struct serving_options options = {.least = 0.5, .splats = 1000};
+	struct serving_reply reply = {0};
+	cJSON *body = json_read(path, &e), *what = json_get(body, "do");
+
+	if (!options.run) {
+		static char encoder[4096];
+		if (!(options.run = getenv("REFERSPLAT_FUZZ_RUN")))
+			abort();
+		snprintf(encoder, sizeof encoder, "%s/encoder", options.run);
+		options.encoder = encoder;
+		if (serving_open(&s, &options, &report_silent, &e))
+			abort();
+	}
+	if (cJSON_IsString(what))
+		serving_answer(&s, what->valuestring, body, 0, &reply, &e);
+	free(reply.bytes);
+	cJSON_Delete(body);
+}
+
 enum { FILES_MOST = 8 };
 
 static const struct target {
@@ -309,6 +334,7 @@ static const struct target {
 	{"scene", try_folder, {"cameras.json", "splats.safetensors"}, 0},
 	{"selection", try_selection, {0}, 0},
 	{"regions", try_regions, {0}, 0},
+	{"requests", try_requests, {0}, 0},
 	{"sentences", try_sentences, {0}, 0},
 	{"sog", try_sog,
 		{"meta.json", "means_l.webp", "means_u.webp", "quats.webp", "scales.webp", "sh0.webp",

@@ -8,7 +8,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 build=$(cd "$1" && pwd)
 seconds=$2
 shift 2
-export OMP_NUM_THREADS=1 ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
+export REFERSPLAT_FUZZ_RUN=$build/seeds.run OMP_NUM_THREADS=1 ASAN_OPTIONS=allocator_may_return_null=1:detect_leaks=1 UBSAN_OPTIONS=print_stacktrace=1
 mkdir -p "$build/crashes" "$build/corpus" "$build/executions"
 [ -e "$build/seeds/text.dict" ] || "$here/seeds.sh" "$build/seeds" "$build/bin" "$build/fuzz/reader-checkpoint" || exit 1
 [ $# != 0 ] || set -- $(cd "$build/seeds" && printf '%s\n' */ | tr -d /)

@@ -159,6 +159,27 @@ seed image png/view_000/*.png overlay/view_000/*.png small/images/* few-png/*/*.
 seed lifted some-lifted.safetensors few-lifted.safetensors
 pseudomask-propose -q --weights few/whole --regions regions.safetensors -o /dev/null few
 seed regions regions.safetensors
+rm -rf "$dir.run"
+cp -r kitchen "$dir.run"
+cp -r weights encoder "$dir.run"
+pseudomask-propose -q --weights weights --regions "$dir.run/regions.safetensors" -o /dev/null scene
+mkdir requests
+box=$(jq -r '.object' sentences.jsonl | head -n 1)
+(
+	cd requests
+	printf '{"do":"ask","question":"where is the %s?","from":"view_001","conversation":"a"}' "$box" >ask
+	printf '{"do":"ask","question":"how many things are left of it?","from":[1,2,3],"conversation":"a"}' >again
+	printf '{"do":"pick","view":"view_001","x":30,"y":20}' >pick
+	printf '{"do":"pick","view":"view_001","box":[10,10,40,30]}' >box
+	printf '{"do":"pick","origin":[0,-3,1],"direction":[0,1,-0.1]}' >ray
+	printf '{"do":"label","points":[{"view":"view_001","x":30,"y":20}],"outside":[{"view":"view_002","x":1,"y":1}],"size":-1,"views":["view_001","view_002"]}' >label
+	printf '{"do":"label","outline":{"view":"view_001","points":[[1,1],[20,1],[20,20.5]]}}' >outline
+	printf '{"do":"label","box":{"view":"view_001","box":[1,1,20,20]},"name":"cup","rename":"mug","remove":"pan"}' >name
+	printf '{"do":"mask","view":"view_001","thing":["%s"]}' "$box" >mask
+	printf '{"do":"view","name":"view_001"}' >view
+	printf '{"do":"things"}' >things
+)
+seed requests requests/*
 seed masks some-masks.jsonl
 seed_cut model 800 some-model.safetensors
 gs-transform -q -o few.glb few.ply
@@ -219,6 +240,7 @@ for target in "$dir"/*/; do
 	sog) set -- sog.c archive.c ;;
 	spz) set -- spz.c spz_container.c ;;
 	check) set -- scene.c weights.c text.c lifted.c features.c selection.c masks.c boxes.c sentences.c ;;
+	requests) set -- ../../cmd/serve/serve_ask.c ../../cmd/serve/serve_place.c ../../cmd/serve/serve_label.c ../../cmd/serve/serving.c ;;
 	*) set -- "${target%-*}.c" ;;
 	esac
 	set -- "$@" safetensors.c json.c
