@@ -7,7 +7,8 @@ const count = (n, one, more = one + 's') => n.toLocaleString('en') + ' ' + (n ==
 const STRIP = 16; // photographs beneath the large one; an answer is looked for in these
 const DRAG = 6; // pixels of the screen that make a click a line
 const photo = find('#photo'), frame = find('.frame'), overlay = find('.frame canvas'), talk = find('#talk ol'), line = find('#ask input');
-let scene, viewer = null, view = null, strip = [];
+let scene, viewer = null, is_stale = false; // whether the viewer has the splats of another revision
+let view = null, strip = [];
 let lit = {names: [], masks: new Map(), is_preview: false}; // what is lit up; its masks by view
 let label = null; // the thing that is being named: null unless the mode is on
 const kept = {get: key => JSON.parse(sessionStorage.getItem(key)), set: (key, value) => sessionStorage.setItem(key, JSON.stringify(value))};
@@ -303,7 +304,7 @@ function set_mode(is_on) {
 	find('[data-act=outside]').setAttribute('aria-pressed', false);
 	clear_masks([], is_on);
 	find('.strip').replaceChildren(...strip.map(s => s.button));
-	if (is_on) tell_label();
+	if (is_on) tell_label(); else update_viewer();
 }
 
 function tell_label(words) {
@@ -431,6 +432,13 @@ function chip(thing) {
 	return e;
 }
 
+// Not while things are named one after the other: splats take long to load.
+function update_viewer() {
+	if (!viewer || !is_stale || label) return;
+	is_stale = false;
+	viewer.change(scene);
+}
+
 function mark_chips() {
 	for (const e of document.querySelectorAll('.things > span')) {
 		e.classList.toggle('is-shown', lit.names.includes(e.dataset.name));
@@ -448,7 +456,8 @@ async function refresh() {
 	if (!scene.things.length)
 		find('.things').append(make('p', {class: 'soft'}, can_name() ? 'Nothing has a name yet. Press Label, click a thing in the photograph, and say what it is.' : 'Nothing has a name here.'));
 	mark_chips();
-	if (viewer) viewer.change(scene);
+	is_stale = true;
+	update_viewer();
 }
 
 // Clicks on what is shown.
@@ -500,6 +509,7 @@ function start_viewer() {
 	};
 	section.hidden = false;
 	document.body.classList.add('has-viewer');
+	is_stale = false;
 	if (scene.camera.name) stage.style.backgroundImage = `url("${encodeURI(address({name: scene.camera.name}))}")`;
 	viewer = make_viewer(stage, scene, {
 		splats: async () => (await get('/v1/splats')).arrayBuffer(),
