@@ -154,8 +154,10 @@ async function set_view(v) {
 	find('select', photo).value = v.name;
 	for (const s of strip) s.button.setAttribute('aria-pressed', s.view === v);
 	draw_large();
-	const now = lit, wanted = lit.names.length && !lit.masks.has(v.name);
-	if (!wanted) return;
+	if (lit.masks.has(v.name)) return;
+	if (label && is_marked() && !label.outline) return preview();
+	const now = lit;
+	if (!now.names.length) return;
 	const mask = await mask_of(v.name, now.names);
 	if (lit === now) put_mask(v.name, mask);
 }
@@ -202,11 +204,9 @@ async function show(names, words = '', in_view = false) {
 
 // The conversation: the last first.
 
-const names_in = reply => (reply.things || []).map(t => t.name);
-
 function item(question, reply) {
 	const size = reply.picked && reply.things[0]?.size ? '\nsize ' + reply.things[0].size.map(x => x.toPrecision(3)).join(' x ') + ' high' : '';
-	const words = (reply.words || reply.reason || 'There is no answer.') + size, names = names_in(reply), more = [], others = reply.unsure && reply.runner_up ? [reply.runner_up.name] : [];
+	const words = (reply.words || reply.reason || 'There is no answer.') + size, names = (reply.things || []).map(t => t.name), more = [], others = reply.unsure && reply.runner_up ? [reply.runner_up.name] : [];
 	// What stands behind the first ";" of a line is how sure it is.
 	const parts = words.split('\n').flatMap((l, k) => [(k ? '\n' : '') + l.replace(/;.*/, ''), /;/.test(l) ? make('span', {class: 'soft'}, l.slice(l.indexOf(';'))) : null]);
 	const li = make('li', {class: names.length ? null : 'refused'});
@@ -247,7 +247,6 @@ async function answer(question, path, body, extra = {}) {
 		const reply = Object.assign(await call(path, body), extra);
 		trouble(null);
 		await say(question, reply, waiting).choose();
-		return reply;
 	} catch (e) {
 		waiting.remove();
 		throw e;
@@ -320,15 +319,14 @@ function tell_label(words) {
 const marks = () => { const {points, outside, size, outline} = label; return structuredClone({points, outside, size, outline}); };
 const to_send = () => label.outline ? {outline: label.outline} : {points: label.points, outside: label.outside, size: label.size};
 
-// Changes the marks, and shows what they mean: in the photograph that is looked at, then in the others.
-async function mark(change, clicks = 1) {
-	const before = marks();
+async function mark(change) {
+	label.before.push(marks());
 	change();
-	label.before.push(before);
-	label.clicks += clicks;
+	label.clicks++;
 	await preview();
 }
 
+// Shows what the marks mean: in the photograph that is looked at, then in the others.
 async function preview() {
 	const now = label;
 	now.abort?.abort();
@@ -389,7 +387,7 @@ async function save() {
 		const reply = await call('/v1/label', {...to_send(), name});
 		trouble(null);
 		await refresh();
-		set_mode(true);
+		if (label === now) set_mode(true);
 		say('New: ' + name, {things: [{name}], is_said: true, called: {text: 'the ' + name},
 			words: `It can be asked now; ${now.outline ? 'drawn round' : count(now.clicks, 'click')}, lifted in ${reply.seconds.toFixed(1)} s`});
 	} catch (e) {
@@ -455,6 +453,8 @@ async function refresh() {
 	find('.things').replaceChildren(...scene.things.map(chip));
 	if (!scene.things.length)
 		find('.things').append(make('p', {class: 'soft'}, can_name() ? 'Nothing has a name yet. Press Label, click a thing in the photograph, and say what it is.' : 'Nothing has a name here.'));
+	masks.clear();
+	if (!lit.names.every(name => scene.things.some(t => t.name === name))) clear_masks([], false);
 	mark_chips();
 	is_stale = true;
 	update_viewer();
@@ -510,7 +510,7 @@ function start_viewer() {
 	section.hidden = false;
 	document.body.classList.add('has-viewer');
 	is_stale = false;
-	if (scene.camera.name) stage.style.backgroundImage = `url("${encodeURI(address({name: scene.camera.name}))}")`;
+	if (scene.camera.name) stage.style.backgroundImage = `url("${address({name: scene.camera.name})}")`;
 	viewer = make_viewer(stage, scene, {
 		splats: async () => (await get('/v1/splats')).arrayBuffer(),
 		module: async name => (await get('/modules/' + files[name])).text(),
@@ -542,7 +542,7 @@ function keys(e) {
 	if (e.key === 'l' && can_name()) { e.preventDefault(); set_mode(!label); }
 }
 
-const question_in = hash => hash.startsWith('#q=') ? decodeURIComponent(hash.slice(3)) : '';
+const question_in = hash => hash.startsWith('#q=') ? new URLSearchParams(hash.slice(1)).get('q') : '';
 
 async function start() {
 	const token = /^#([0-9a-f]{32})$/.exec(location.hash);

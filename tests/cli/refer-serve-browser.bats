@@ -32,7 +32,7 @@ setup_file() {
 }
 
 teardown_file() {
-	[ -z "${DRIVER:-}" ] || kill "$(cat "$BATS_FILE_TMPDIR/pid")" "$(cat "$BATS_FILE_TMPDIR/driver.pid")"
+	[ -z "${DRIVER:-}" ] || kill "$(cat "$BATS_FILE_TMPDIR/driver.pid")" "$(cat "$BATS_FILE_TMPDIR/pid")" 2>/dev/null || true
 }
 
 setup() {
@@ -206,4 +206,9 @@ not() { ! "$@"; }
 	lit "drawn thing"
 	is "document.documentElement.scrollWidth <= innerWidth"
 	quiet
+	kill "$(cat pid)"
+	for _ in $(seq 100); do kill -0 "$(cat pid)" 2>/dev/null || break; sleep 0.1; done
+	js "ask('where is it?')"
+	eventually "return document.querySelector('#trouble').textContent.startsWith('The server does not answer')"
+	is "document.querySelector('#ask input').value === 'where is it?'"
 }
