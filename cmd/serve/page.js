@@ -308,7 +308,7 @@ function set_mode(is_on) {
 
 function tell_label(words) {
 	const how = scene.can_label ? 'Click a thing in the photograph, or draw round it.' : 'Draw round a thing in the photograph.';
-	const then = scene.can_label && !label.outline ? 'Click what is missing, or Shift-click what is too much; then type its name.' : 'Type its name.';
+	const then = scene.can_label && !label.outline ? 'Click what is missing, or Shift-click (“Not this”) what is too much; then type its name.' : 'Type its name.';
 	find('#label p').textContent = words || (is_marked() ? then : how);
 	for (const e of document.querySelectorAll('#label button, #label input')) {
 		e.disabled = !!label.saving || !(is_marked() || e.dataset.act === 'undo' && label.before.length);
