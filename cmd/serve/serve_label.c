@@ -216,11 +216,29 @@ struct fresh {
 	const struct masks *all;
 };
 
+/* What conversations were about, which has another number now, or is gone. */
+static void move_talks(struct serving *s, const struct lifted *before, const struct lifted *now)
+{
+	for (struct serving_talk *t = s->talks; t < s->talks + SERVING_TALKS; t++) {
+		if (!t->used || t->talk.thing == ASKING_NONE)
+			continue;
+		const char *name = before->names[t->talk.thing];
+		size_t thing = 0;
+		while (thing < now->objects && strcmp(now->names[thing], name) != 0)
+			thing++;
+		if (thing < now->objects)
+			t->talk.thing = thing;
+		else
+			t->talk = (struct talk){.thing = ASKING_NONE};
+	}
+}
+
 static int take_fresh(struct serving *s, void *data, struct err *e)
 {
 	struct fresh *f = data;
 	struct asking *before = s->asking;
 
+	move_talks(s, &before->model.lifted, &f->asking->model.lifted);
 	s->asking = f->asking;
 	f->asking = before;
 	pthread_mutex_lock(&s->lock);

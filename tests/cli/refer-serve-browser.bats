@@ -20,6 +20,8 @@ setup_file() {
 	jq -c '(.images | INDEX(.id)) as $of | (.categories | INDEX(.id)) as $named | .annotations[] | $of["\(.image_id)"] as $i | .bbox as [$x, $y, $w, $h] |
 		{view: ($i.file_name | sub("\\.png$"; "")), size: [$i.height, $i.width], box: [$x, $y, $x + $w, $y + $h],
 		 name: $named["\(.category_id)"].name}' coco.json >boxes.jsonl
+	jq -r 'select(.view == "view_000").name' boxes.jsonl | sort -u >names
+	[ "$(wc -l <names)" = 6 ]
 	"$BIN/pseudomask-propose" -q --weights run/weights --boxes boxes.jsonl --regions run/regions.safetensors -o /dev/null run/scene
 	"$BIN/refer-serve" --port 0 --encoder encoder run >url 2>serve.err 3>&- &
 	echo $! >pid
@@ -122,8 +124,6 @@ not() { ! "$@"; }
 	browse
 	is "location.href === '$server/' && !scene.things.length"
 	js "document.querySelector('#mode').click()"
-	jq -r 'select(.view == "view_000").name' boxes.jsonl | sort -u >names
-	[ "$(wc -l <names)" = 6 ]
 	while read -r name; do
 		press $(place "$name")
 		eventually "return lit.masks.size === strip.length"
@@ -173,9 +173,11 @@ not() { ! "$@"; }
 }
 
 @test "names are changed and forgotten, the conversation stays, and a link asks again" {
+	curl -s -H "Authorization: Bearer $(sed 's/.*#//' url)" "$server/v1/label" \
+		-d '{"outline": {"view": "view_000", "points": [[60, 40], [80, 40], [80, 60]]}, "name": "zeppelin"}' >reply
 	browse
 	n=$(js "return scene.things.length")
-	js "find('.things span button').click(); find('.things [aria-label^=rename]').click(); find('.things input').value = 'green zeppelin'"
+	js "find('.things [data-name=zeppelin] button').click(); find('.things [aria-label=\"rename zeppelin\"]').click(); find('.things input').value = 'green zeppelin'"
 	type_in $'\ue007'
 	eventually "return scene.things.some(t => t.name === 'green zeppelin')"
 	ask "where is the green zeppelin?"

@@ -147,6 +147,21 @@ refused() {
 	[ ! -s nameless/labels.jsonl ] && [ ! -e nameless/lifted/labels.safetensors ]
 }
 
+@test "a conversation is about the same thing when others get names before it, and about none when it is gone" {
+	cp -r nameless talked
+	outline() { echo "{\"do\": \"label\", \"outline\": {\"view\": \"view_001\", \"points\": $2}, \"name\": \"$1\"}"; }
+	asks() { echo "{\"do\": \"ask\", \"question\": \"$1\", \"conversation\": \"me\"}"; }
+	{
+		outline zeppelin "[[30, 20], [60, 20], [60, 50]]"
+		asks "where is the zeppelin?"
+		outline anvil "[[10, 40], [25, 40], [25, 60]]"
+		asks "what is it?"
+		echo '{"do": "label", "remove": "zeppelin"}'
+		asks "what is it?"
+	} | lines talked >said
+	jq -se '.[1].things[0].name == "zeppelin" and .[3].understood == "what is the zeppelin?" and .[5].understood == null' said
+}
+
 @test "an outline needs no regions, and takes the place of a model's thing of that name" {
 	rm -f named/regions.safetensors
 	lines named >said <<-END
