@@ -75,8 +75,12 @@ static struct pointed points_to(
 	static const char *const that[] = {"that", "this", NULL};
 	static const char *const those[] = {"they", "them", "those", "these", NULL};
 	const int is_one = tokens_is(t, i + 1, "one") || tokens_is(t, i + 1, "thing");
-	const int class = tokens_class(t, i + 1),
-		  is_end = i + 1 == t->n || class == CLOSED_BE || class == CLOSED_CONJUNCTION;
+	const int class = tokens_class(t, i + 1), before = i ? tokens_class(t, i - 1) : CLOSED_CONJUNCTION;
+	/* behind a noun, as of "everything that is red", a clause begins */
+	const int may_stand =
+		before == CLOSED_CONJUNCTION || before == CLOSED_BE || before == CLOSED_PREPOSITION;
+	const int is_end =
+		i + 1 == t->n || (may_stand && (class == CLOSED_BE || class == CLOSED_CONJUNCTION));
 
 	if (is_named_before(t, i))
 		return (struct pointed){.end = i + 1};
@@ -133,7 +137,8 @@ static int ask_again(const struct talk *talk, const char *thing, char understood
 		thing, at + strlen(last.text[0]));
 }
 
-int talk_understand(const struct talk *talk, char *const *names, size_t objects, const char *question,
+/* The question with what its words point back to in their place. */
+static void put_pointed(const struct talk *talk, char *const *names, size_t objects, const char *question,
 	char understood[QUESTION_TEXT])
 {
 	char noun[CALLING_TEXT];
@@ -141,14 +146,8 @@ int talk_understand(const struct talk *talk, char *const *names, size_t objects,
 	size_t n = 0;
 	int from = 0;
 
-	snprintf(understood, QUESTION_TEXT, "%s", question);
-	if (!talk || !*talk->question || talk->thing == ASKING_NONE)
-		return 0;
+	*understood = 0;
 	tokens_take(&t, question, NULL, NULL, 0);
-	if (is_other(&t))
-		return snprintf(understood, QUESTION_TEXT, "%s", talk->question) > 0;
-	if (find_again(&t))
-		return ask_again(talk, question + t.word[find_again(&t)].span.begin, understood), 0;
 	find_shared(names, objects, talk->thing, noun);
 	for (int i = 0, end; i < t.n && n < QUESTION_TEXT; i = end) {
 		const struct pointed p = points_to(&t, i, talk, names[talk->thing], noun);
@@ -161,6 +160,25 @@ int talk_understand(const struct talk *talk, char *const *names, size_t objects,
 	}
 	if (n < QUESTION_TEXT)
 		snprintf(understood + n, QUESTION_TEXT - n, "%s", question + from);
+}
+
+int talk_understand(const struct talk *talk, char *const *names, size_t objects, const char *question,
+	char understood[QUESTION_TEXT])
+{
+	char again[QUESTION_TEXT];
+	struct tokens t;
+
+	snprintf(understood, QUESTION_TEXT, "%s", question);
+	if (!talk || !*talk->question || talk->thing == ASKING_NONE)
+		return 0;
+	tokens_take(&t, question, NULL, NULL, 0);
+	if (is_other(&t))
+		return snprintf(understood, QUESTION_TEXT, "%s", talk->question) > 0;
+	if (find_again(&t))
+		ask_again(talk, question + t.word[find_again(&t)].span.begin, again);
+	else
+		memcpy(again, understood, sizeof again);
+	put_pointed(talk, names, objects, again, understood);
 	return 0;
 }
 
