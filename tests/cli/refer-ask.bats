@@ -129,6 +129,13 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 	jq -se --arg a "$a" --arg b "$b" '[.[0, 1].things[0].name == $a] + [.[2, 3].things[0].name == $b] + [.[4].things[0].name != $b, (.[5].answered | not)] | all' said
 }
 
+@test "what points back within another thing, and a 'that' that begins a clause" {
+	a=$(sed -n 1p things)
+	printf '%s\n' "where is the $a?" "and the one next to that?" "everything that is red" "how many of those are red?" | ask --json run >said || [ $? = 1 ]
+	jq -se --arg a "$a" '[.[1].understood == "the one next to the \($a)?", .[2].understood == null] | all' said
+	[ "$(kind "tell me what you can see" .kind)" = list ]
+}
+
 @test "several things are a line each" {
 	[ "$(ask run "all the things" | cut -d: -f1 | sort)" = "$(cat things)" ]
 	ask --json run "all the things" | jq -e '.things | length == 3 and (map(.probability) | . == (sort | reverse))'
