@@ -131,7 +131,7 @@ $(STATIC): $(PUBLIC) $(LIBRARY)
 	@rm -f $@
 	ar rcs $@ $(@:.a=.o)
 
-$(BUILD)/bin/refer-serve: LDLIBS += -lmicrohttpd -lpthread
+$(BUILD)/bin/refer-serve: override LDLIBS += -lmicrohttpd -lpthread
 $(BUILD)/bin/%: $(BUILD)/obj/cmd/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)
