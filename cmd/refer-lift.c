@@ -14,9 +14,13 @@ static struct {
 
 static const struct cli_option table[] = {
 	CLI_TEXT("scene", &options.files.scene, "SCENE", "scene folder of gs-import (required)"),
-	CLI_TEXT("weights", &options.files.weights, "WEIGHTS", "folder of gs-weigh (required)"),
+	CLI_TEXT("weights", &options.files.weights, "WEIGHTS",
+		"folder of gs-weigh (required, but with --regions)"),
 	CLI_TEXT("text", &options.files.text, "TEXT", "sentences encoded by text-encode (required)"),
-	CLI_TEXT("masks", &options.files.masks, "MASKS", "masks of pseudomask-select (required)"),
+	CLI_TEXT("masks", &options.files.masks, "MASKS",
+		"masks of pseudomask-select (required, but with --regions)"),
+	CLI_TEXT("regions", &options.files.regions, "FILE",
+		"in place of masks: regions of pseudomask-propose, which the sentences name, all together"),
 	CLI_TEXT("spare", &options.files.spare, "FILE",
 		"masks of regions that an object may have instead, of pseudomask-select --spare; not looked at with --names masks"),
 	CLI_ONE_OF("names", &options.is_as_masked, "sentences|masks",
@@ -36,7 +40,13 @@ static int lift(struct lifting *l, const struct cli *c, const struct report *to,
 	double confidence = 0;
 	size_t moved;
 
-	if (lifting_read(l, &options.files, to, e) || lifting_make(l, options.is_as_masked, &moved, to, e))
+	if (lifting_read(l, &options.files, to, e))
+		return -1;
+	const struct origin origin = {l->scene.fingerprint, l->text.encoder};
+	if (options.files.regions)
+		return lifting_name(l, to, e) || lifted_write(model, &origin, c->output, "--regions", e) ? -1
+													 : 0;
+	if (lifting_make(l, options.is_as_masked, &moved, to, e))
 		return -1;
 	for (size_t o = 0; o < model->objects; o++)
 		confidence += (double)model->confidence[o] / (double)model->objects;
@@ -50,7 +60,6 @@ static int lift(struct lifting *l, const struct cli *c, const struct report *to,
 			"%s: the masks agree by %.2f with what was lifted of them, at least %.2g is right: are the cameras of %s those that its splats were trained with, and in their frame? " DATAPARSER_WAY_OUT,
 			file_name(options.files.masks), confidence, LIFT_AGREEMENT_LEAST,
 			options.files.scene);
-	const struct origin origin = {l->scene.fingerprint, l->text.encoder};
 	return lifted_write(
 		model, &origin, c->output, options.is_as_masked ? "--names masks" : "--names sentences", e);
 }
@@ -60,9 +69,11 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	const struct lifting_files *f = &options.files;
 	SCOPED_BY(lifting_free) struct lifting l = {0};
 
-	if (!f->scene || !f->weights || !f->text || !f->masks)
+	if (!f->scene || !f->text || (!f->regions && (!f->weights || !f->masks)))
 		cli_usage(c, "--scene, --weights, --text and --masks are required");
-	cli_refuse_overwrite(c, CLI_SCENE " " CLI_WEIGHTS " text masks spare", "output", NULL);
+	if (f->regions && (f->weights || f->masks || f->spare || options.is_as_masked))
+		cli_usage(c, "--regions are in place of --weights, --masks, --spare and --names masks");
+	cli_refuse_overwrite(c, CLI_SCENE " " CLI_WEIGHTS " text masks spare regions", "output", NULL);
 	cli_refuse_terminal(c);
 	if (options.is_as_masked)
 		options.files.spare = NULL;

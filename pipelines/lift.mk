@@ -9,6 +9,7 @@
 #	make -f pipelines/lift.mk SCENE=work/desk SPLATS=point_cloud.ply CAMERAS=sparse/0 \
 #		MASKS=input_0005.png NAMES=names.txt
 #
+# Or from sentences and photographs, where CANDIDATES is left out: all training sentences together say which regions they mean.
 # Or from nothing but photographs: `regions` finds what may be things, by boxes where `make detector` was done, and says how to
 # point at them, which makes the MASKS:
 #
@@ -39,7 +40,7 @@ answers := $(if $(TEST_VIEWS),$(foreach t,$(splits),$(SCENE)/lifted/predictions.
 outlines := $(call flat,WHOLE,whole)
 $(if $(and $(UNDISTORT),$(WHOLE)),$(eval $(call flatten,WHOLE,whole)))
 whole := $(if $(WHOLE),$(SCENE)/lifted/whole.jsonl)
-lifted_scores := $(if $(TRUTH),$(if $(MASKS),,$(SCENE)/lifted/masks.score.json) $(answers:.jsonl=.score.json)) $(whole:.jsonl=.score.json) \
+lifted_scores := $(if $(TRUTH),$(if $(MASKS)$(by_regions),,$(SCENE)/lifted/masks.score.json) $(answers:.jsonl=.score.json)) $(whole:.jsonl=.score.json) \
 	$(if $(BOXES),$(SCENE)/lifted/boxes.score.json)
 
 # What is typed to ask, for a shell, whatever is in the names.
@@ -97,19 +98,19 @@ DETECTOR ?= $(wildcard $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/detecto
 boxes := $(if $(DETECTOR),$(SCENE)/boxes.jsonl)
 labels := $(SCENE)/labels.jsonl
 again = make -f $(called) SCENE=$(SCENE) SPLATS=$(SPLATS) $(if $(CAMERAS),CAMERAS=$(CAMERAS) )$(if $(IMAGES),IMAGES=$(IMAGES) )MASKS=$(labels)
-pick = $(call typed,$(if $(BIN),$(BIN)/)mask-pick) --regions $(SCENE)/regions.safetensors --weights $(SCENE)/weights --point VIEW:x,y --name NAME $(SCENE)/scene >>$(labels)
+pick = $(call typed,$(if $(BIN),$(BIN)/)mask-pick) --regions $(regions) --weights $(SCENE)/weights --point VIEW:x,y --name NAME $(SCENE)/scene >>$(labels)
 
 .PHONY: regions
-regions: $(SCENE)/regions.safetensors
+regions: $(regions)
 	@printf '%s\n' $(call quote,to name a thing: $(pick)) $(call quote,to lift what is named: $(again))
 
 command.detect = box-detect --model $(call quoted,DETECTOR) --scene $(SCENE)/scene -o $(boxes)
-command.propose = pseudomask-propose --weights $(SCENE)/weights $(if $(boxes),--boxes $(boxes)) --regions $(SCENE)/regions.safetensors \
+command.propose = pseudomask-propose --weights $(SCENE)/weights $(if $(boxes),--boxes $(boxes)) --regions $(regions) \
 	-o $(SCENE)/regions.jsonl $(SCENE)/scene
 $(call track,detect propose)
 
 $(SCENE)/boxes.jsonl: $(scene) $(SCENE)/log/detect.command
 	$(call run,detect)
 
-$(SCENE)/regions.safetensors: $(weights) $(boxes) $(SCENE)/log/propose.command
+$(regions): $(weights) $(boxes) $(SCENE)/log/propose.command
 	$(call run,propose)

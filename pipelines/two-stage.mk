@@ -52,7 +52,9 @@ $(if $(MASKS),,; the things to find are named in one of four ways:
   make -f pipelines/lift.mk regions ...           nothing at all: finds what may be things, and says how to name them by a click
 for example: make -f $(called) SCENE=work/kitchen SPLATS=point_cloud.ply CAMERAS=sparse/0 MASKS=labels.json)
 endef
-$(call check,SCENE SPLATS $(if $(SENTENCES)$(CANDIDATES),$(if $(MASKS),,SENTENCES CANDIDATES),$(if $(filter regions,$(MAKECMDGOALS)),,MASKS)),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH $(more_files),IMAGES TEST_VIEWS BERT SCALE \
+# Of lift.mk, where sentences and photographs are all there is: regions that the sentences name.
+by_regions := $(and $(filter lifted,$(.DEFAULT_GOAL)),$(SENTENCES),$(IMAGES),$(if $(CANDIDATES)$(MASKS),,1))
+$(call check,SCENE SPLATS $(if $(by_regions),SENTENCES,$(if $(SENTENCES)$(CANDIDATES),$(if $(MASKS),,SENTENCES CANDIDATES),$(if $(filter regions,$(MAKECMDGOALS)),,MASKS))),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH $(more_files),IMAGES TEST_VIEWS BERT SCALE \
 	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN UNDISTORT $(more))
 $(if $(filter stage1 lifted,$(TEACH)),,$(error $(called): TEACH is '$(TEACH)', and stage1 or lifted are what it can be))
 
@@ -79,6 +81,7 @@ masks1 := $(or $(drawn),$(SCENE)/stage1/masks.jsonl)
 masks2 := $(SCENE)/stage2/masks.jsonl
 masks3 := $(or $(drawn),$(SCENE)/lifted/masks.jsonl)
 # Made with masks3.
+regions := $(SCENE)/regions.safetensors
 spare3 := $(if $(MASKS),,$(SCENE)/lifted/spare.jsonl)
 # Sentences that are names only train.
 splits := train $(if $(SENTENCES),test)
@@ -116,8 +119,8 @@ render = refer-render --scene $(SCENE)/scene --text $(text) --model $(model$(1))
 predict = $(call render,$(1)) --sentences $(2) -o $(SCENE)/stage$(1)/predictions.$(2).jsonl
 command.teach = $(call render,$(teacher)) --split train --sentences train --scale $(call quoted,SCALE) -o $(masks2)
 command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/weights --spare $(spare3) -o $(masks3) $(candidates)
-command.lift = refer-lift --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks3) \
-	$(if $(spare3),--spare $(spare3)) $(call options,LIFT) $(if $(MASKS),--names masks) \
+command.lift = refer-lift --scene $(SCENE)/scene --text $(text) $(if $(by_regions),--regions $(regions),--weights $(SCENE)/weights --masks \
+	$(masks3) $(if $(spare3),--spare $(spare3)) $(if $(MASKS),--names masks)) $(call options,LIFT) \
 	-o $(model3)
 command.page = refer-report $(if $(TRUTH),--truth $(truth)) $(SCENE)
 command.score = miou-score --json --quiet --predicted-views --truth $(truth)
@@ -184,7 +187,7 @@ $(SCENE)/stage%/model.safetensors: $(weights) $(text) $(SCENE)/log/train%.comman
 		LC_ALL=C sed -n 's/.*"iteration":"\([0-9]*\)".*/\1/p') of an interrupted training"
 	$(call run,train$*)
 
-$(model3): $(masks3) $(weights) $(text) $(SCENE)/log/lift.command
+$(model3): $(if $(by_regions),$(regions),$(masks3)) $(weights) $(text) $(SCENE)/log/lift.command
 	@mkdir -p $(@D)
 	$(call run,lift)
 

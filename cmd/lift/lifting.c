@@ -8,11 +8,12 @@
 
 #include <math.h>
 
-/* Gives lifted objects their names, and the sentences of a text with pieces: object (t->n) has the one that
- * each names, or LIFTING_NONE where it stays out. *l can be freed in any case. */
-static int add_sentences(
-	struct lifted *l, const struct text *t, const size_t *object, const char *const *names, struct err *e)
+/* Sentences that name no object of the model stay out. */
+int lifting_add_sentences(struct lifting *lifting, struct err *e)
 {
+	struct lifted *l = &lifting->model;
+	const struct text *t = &lifting->text;
+	const size_t *object = lifting->sentence_object;
 	const size_t width = (size_t)t->width, words = (size_t)t->offsets[t->n];
 
 	l->width = t->width;
@@ -28,7 +29,7 @@ static int add_sentences(
 		(t->middle && !l->middle))
 		return -1;
 	for (size_t o = 0; o < l->objects; o++)
-		if (!(l->names[o] = mem_strdup(names[o], e)))
+		if (!(l->names[o] = mem_strdup(lifting->names[o], e)))
 			return -1;
 	for (size_t i = 0; i < t->n; i++) {
 		if (object[i] == LIFTING_NONE)
@@ -71,8 +72,12 @@ static int add_masks(struct lifting *l, const char *path, const struct report *t
 static int load(struct lifting *l, const struct report *to, struct err *e)
 {
 	if (scene_read(&l->scene, l->files->scene, e) || text_read(&l->text, l->files->text, e) ||
-		add_masks(l, l->files->masks, to, e) ||
-		masks_check_refs(&l->set, l->files->masks, l->text.refs, l->text.objects, l->text.n, e))
+		(l->files->masks && (add_masks(l, l->files->masks, to, e) ||
+					    masks_check_refs(&l->set, l->files->masks, l->text.refs,
+						    l->text.objects, l->text.n, e))) ||
+		(l->files->regions && (regions_file_read(&l->regions, l->files->regions, e) ||
+					      fingerprint_check("scene", l->files->regions, &l->regions.scene,
+						      l->files->scene, &l->scene.fingerprint, e))))
 		return -1;
 	l->own = l->set.n;
 	if (l->files->spare && add_masks(l, l->files->spare, to, e))
@@ -82,13 +87,15 @@ static int load(struct lifting *l, const struct report *to, struct err *e)
 			file_name(l->files->text));
 	l->mask_object = mem_alloc(l->set.n, sizeof *l->mask_object, "masks", e);
 	l->sentence_object = mem_alloc(l->text.n, sizeof *l->sentence_object, "sentences", e);
-	l->names = mem_alloc(l->text.n + l->set.n - l->own, sizeof *l->names, "objects", e);
+	l->names = mem_alloc(
+		l->text.n + l->set.n - l->own + l->regions.chosen_count, sizeof *l->names, "objects", e);
 	l->trained = mem_alloc(l->text.n, sizeof *l->trained, "sentences", e);
 	l->is_shown = mem_zalloc(l->text.n, 1, "sentences", e);
 	l->is_there = mem_zalloc(l->scene.cameras.n, 1, "views", e);
 	if (!l->mask_object || !l->sentence_object || !l->names || !l->trained || !l->is_shown ||
 		!l->is_there)
 		return -1;
+	memset(l->is_shown, l->files->regions != NULL, l->text.n);
 	return mask_index_make(&l->index, l->set.items, l->set.n, MASK_BY_OBJECT, e);
 }
 
@@ -264,7 +271,7 @@ int lifting_read(struct lifting *l, const struct lifting_files *files, const str
 	if (load(l, to, e) || parser_weights_default(&l->weights, e) ||
 		parser_weights_need_middle(
 			&l->weights, file_name(files->text), l->text.middle, &l->text.encoder, e) ||
-		find_views(l, to, e) || find_sentences(l, e))
+		(l->files->weights && find_views(l, to, e)) || find_sentences(l, e))
 		return -1;
 	find_objects(l, to);
 	return find_spare(l, e);
@@ -319,8 +326,7 @@ int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struc
 	report_start(to, "views", (double)l->scene.cameras.n * LIFT_ROUNDS);
 	int bad = lift(l, to, e);
 	report_end(to);
-	if (bad || add_sentences(&l->model, &l->text, l->sentence_object, l->names, e) ||
-		find_fixed(l, is_as_masked, e) ||
+	if (bad || lifting_add_sentences(l, e) || find_fixed(l, is_as_masked, e) ||
 		disambiguate(&l->model, l->objects, l->is_fixed, &l->scene.splats, &l->scene.cameras, &parser,
 			l->found, e))
 		return -1;
@@ -341,5 +347,6 @@ void lifting_free(struct lifting *l)
 	mem_free_all(l->trained, l->is_fixed, l->found, l->is_shown, l->names, l->is_there);
 	lift_objects_free(&l->lift);
 	lifted_free(&l->model);
+	regions_file_free(&l->regions);
 	parser_weights_free(&l->weights);
 }

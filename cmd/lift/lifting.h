@@ -9,6 +9,7 @@
 #include "formats/scene/lifted.h"
 #include "formats/records/masks.h"
 #include "formats/encoders/parser_weights.h"
+#include "formats/scene/proposed.h"
 #include "formats/scene/scene.h"
 #include "formats/scene/text.h"
 #include "lift/lift_objects.h"
@@ -16,7 +17,8 @@
 
 struct lifting_files {
 	const char *scene, *weights, *text, *masks;
-	const char *spare; /* masks of regions that an object may have in place of its own; NULL: none */
+	const char *spare;   /* masks of regions that an object may have in place of its own; NULL: none */
+	const char *regions; /* of pseudomask-propose, in place of weights and masks; NULL: those are given */
 };
 
 #define LIFTING_NONE ((size_t)-1)
@@ -42,6 +44,7 @@ struct lifting {
 	char *is_there; /* (scene.cameras.n) the view has weights */
 	struct lift_objects lift;
 	struct lifted model; /* what comes of it */
+	struct regions_file regions;
 	struct parser_weights weights;
 };
 
@@ -55,5 +58,11 @@ int lifting_read(
  * are where their masks are, and warnings tell which sentences say otherwise. Of the others that look alike,
  * each is where its sentences say; a warning tells which changed places for that, and *moved how many. */
 int lifting_make(struct lifting *l, int is_as_masked, size_t *moved, const struct report *to, struct err *e);
+
+/* In place of it where files have regions: each object is one of these, which all sentences together say. */
+int lifting_name(struct lifting *l, const struct report *to, struct err *e);
+
+/* Gives l->model, which has `objects` and its Gaussians, the names and training sentences. */
+int lifting_add_sentences(struct lifting *l, struct err *e);
 
 void lifting_free(struct lifting *l);

@@ -34,6 +34,7 @@ void proposing_free(struct proposing *p)
 	}
 	mem_free_all(p->views, p->weight, p->score);
 	region_scores_free(&p->scores);
+	mem_free_strings(p->classes, p->class_count);
 	free(p->chosen);
 	affinity_free(&p->affinity);
 	region_tree_free(&p->tree);
@@ -73,8 +74,37 @@ static int read_pieces(void *context, int worker, size_t at, struct err *e)
 	return !small || pieces_make(&v->pieces, small, v->height, v->width, e) ? -1 : 0;
 }
 
+/* The words for what boxes are of, in their own order. */
+static int take_classes(struct proposing *p, const struct names *words, struct err *e)
+{
+	p->classes = mem_zalloc(names_count(words), sizeof *p->classes, "boxes", e);
+	for (size_t i = 0; i < words->n && p->classes; i++) {
+		const char *word = words->sorted[i].name;
+		if (i && !strcmp(word, words->sorted[i - 1].name))
+			continue;
+		if (!(p->classes[p->class_count++] = mem_strdup(word, e)))
+			return -1;
+	}
+	return p->classes ? 0 : -1;
+}
+
+static int32_t class_of(const struct proposing *p, const char *word)
+{
+	int32_t low = 0, high = (int32_t)p->class_count;
+
+	while (word && low < high) {
+		const int32_t at = low + (high - low) / 2;
+		const int side = strcmp(word, p->classes[at]);
+		if (!side)
+			return at;
+		low = side > 0 ? at + 1 : low;
+		high = side > 0 ? high : at;
+	}
+	return -1;
+}
+
 /* A detection of a view, in pixels of its weights. */
-static int take_box(struct proposing_view *v, const struct detection *d, struct err *e)
+static int take_box(struct proposing_view *v, const struct detection *d, int32_t class, struct err *e)
 {
 	const double across = (double)v->width / d->width, down = (double)v->height / d->height;
 	size_t room = v->box_count;
@@ -82,25 +112,28 @@ static int take_box(struct proposing_view *v, const struct detection *d, struct 
 	if (mem_grow((void **)&v->boxes, &room, v->box_count + 1, sizeof *v->boxes, "boxes", e))
 		return -1;
 	v->boxes[v->box_count++] = (struct affinity_box){
-		d->box[0] * across, d->box[1] * down, d->box[2] * across, d->box[3] * down, d->score};
+		d->box[0] * across, d->box[1] * down, d->box[2] * across, d->box[3] * down, d->score, class};
 	return 0;
 }
 
 static int take_boxes(struct proposing *p, const struct report *to, struct err *e)
 {
 	const struct cameras *c = &p->scene.cameras;
-	SCOPED_BY(names_free) struct names names = {0};
+	SCOPED_BY(names_free) struct names names = {0}, words = {0};
 	SCOPED_BY(detections_free) struct detections all = {0};
 
 	if (detections_read(&all, p->options->boxes, e) ||
-		names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e))
+		names_make(&names, c->views, sizeof *c->views, offsetof(struct camera, name), c->n, e) ||
+		names_make(
+			&words, all.items, sizeof *all.items, offsetof(struct detection, name), all.n, e) ||
+		take_classes(p, &words, e))
 		return -1;
 	for (size_t i = 0; i < all.n; i++) {
 		const size_t at = names_find(&names, all.items[i].view);
 		if (at == NAMES_NONE || !p->views[at].is_used)
 			continue;
 		p->box_count++;
-		if (take_box(&p->views[at], &all.items[i], e))
+		if (take_box(&p->views[at], &all.items[i], class_of(p, all.items[i].name), e))
 			return -1;
 	}
 	report_note(to, 1, "%zu of %zu boxes are of these views", p->box_count, all.n);
@@ -255,7 +288,8 @@ static int choose_regions(struct proposing *p, const struct report *to, struct e
 
 	p->score = mem_alloc(n, sizeof *p->score, "regions", e);
 	p->chosen = mem_alloc((size_t)most, sizeof *p->chosen, "regions", e);
-	if (!value || !p->score || !p->chosen || region_scores_init(&p->scores, p->tree.n, e))
+	if (!value || !p->score || !p->chosen ||
+		region_scores_init(&p->scores, p->tree.n, (int32_t)p->class_count, e))
 		return -1;
 	for (size_t at = 0; at < p->scene.cameras.n; at++)
 		if (p->views[at].is_used && score_view(p, at, &room, e))
@@ -330,11 +364,16 @@ static int put_all(struct proposing *p, FILE *out, struct err *e)
 
 static int write_regions(const struct proposing *p, struct err *e)
 {
+	const size_t classes = p->class_count, count = (size_t)p->count;
 	SCOPED float *score = mem_alloc((size_t)p->tree.n, sizeof *score, "regions", e);
-	const struct regions_file file = {p->tree, score, p->scene.fingerprint};
+	SCOPED float *votes = mem_alloc(count, classes * sizeof *votes, "regions", e);
+	const struct regions_file file = {
+		p->tree, score, count, p->chosen, classes, p->classes, votes, p->scene.fingerprint};
 
-	if (!score)
+	if (!score || !votes)
 		return -1;
+	for (size_t i = 0; i < count * classes; i++)
+		votes[i] = (float)p->scores.votes[(size_t)p->chosen[i / classes] * classes + i % classes];
 	for (int32_t k = 0; k < p->tree.n; k++)
 		score[k] = (float)p->score[k];
 	return regions_file_write(&file, p->options->regions, p->options->boxes ? "--boxes" : "", e);

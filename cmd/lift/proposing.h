@@ -38,7 +38,9 @@ struct proposing_view {
 struct proposing {
 	const struct proposing_options *options;
 	struct scene scene;
-	size_t box_count;	      /* in all views */
+	size_t box_count; /* in all views */
+	size_t class_count;
+	char **classes;		      /* (class_count) what the boxes are of */
 	struct proposing_view *views; /* (scene.cameras.n) */
 	double *weight;		      /* (N) of each Gaussian in all views */
 	size_t kept;		      /* Gaussians that have neighbours */

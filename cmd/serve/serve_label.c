@@ -183,7 +183,7 @@ static int encode_names(const struct serving *s, const char *masks, const char *
 static int lift_model(
 	const struct serving *s, const char *masks, const char *text, const char *model, struct err *e)
 {
-	const struct lifting_files files = {s->scene_path, s->weights, text, masks, NULL};
+	const struct lifting_files files = {s->scene_path, s->weights, text, masks, NULL, NULL};
 	SCOPED_BY(lifting_free) struct lifting l = {0};
 	size_t moved;
 

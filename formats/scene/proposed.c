@@ -4,12 +4,13 @@
 #include "formats/arrays/arrays_in.h"
 #include "formats/arrays/arrays_out.h"
 
-enum { VERSION_READ = 1 };
+enum { VERSION_READ = 2 };
 
 void regions_file_free(struct regions_file *r)
 {
 	region_tree_free(&r->tree);
-	free(r->score);
+	mem_free_strings(r->classes, r->class_count);
+	mem_free_all(r->score, r->chosen, r->votes);
 	*r = (struct regions_file){0};
 }
 
@@ -32,6 +33,26 @@ static int check_tree(const struct region_tree *t, const char *path, struct err 
 	return 0;
 }
 
+/* Which regions are likely things, and what they may be. */
+static void read_chosen(struct regions_file *r, struct arrays_in *in)
+{
+	size_t rows;
+
+	r->chosen = arrays_in_vector(in, "chosen", ST_I32, -1, &r->chosen_count);
+	for (size_t k = 0; k < r->chosen_count && !in->bad; k++)
+		if (r->chosen[k] < 0 || r->chosen[k] >= r->tree.n)
+			in->bad = err_file(in->e, in->st->path,
+				"tensor 'chosen': item %zu is %d, of %d nodes", k, r->chosen[k], r->tree.n);
+	if (in->bad || !safetensors_meta(in->st, "classes"))
+		return;
+	const int classes = arrays_in_width(in, "votes", ST_F32, &rows);
+	r->votes = arrays_in_floats(in, "votes", r->chosen_count, classes);
+	r->classes = arrays_in_list(in, "classes", (size_t)classes, "columns of 'votes'");
+	r->class_count = r->classes ? (size_t)classes : 0;
+	arrays_in_check_names(in, r->classes, r->class_count, 0, "classes");
+	arrays_in_check_unique(in, r->classes, r->class_count, "classes");
+}
+
 int regions_file_read(struct regions_file *r, const char *path, struct err *e)
 {
 	struct safetensors st;
@@ -51,6 +72,7 @@ int regions_file_read(struct regions_file *r, const char *path, struct err *e)
 	if (!in.bad)
 		arrays_in_fill(&in, "score", r->score, nodes);
 	r->tree.n = in.bad ? 0 : (int32_t)nodes;
+	read_chosen(r, &in);
 	const int bad = in.bad || check_tree(&r->tree, st.path, e);
 	safetensors_close(&st);
 	if (bad)
@@ -64,10 +86,15 @@ int regions_file_write(const struct regions_file *r, const char *path, const cha
 {
 	struct arrays_out out;
 
-	arrays_out_begin(&out, path, "refer.regions", "1", "pseudomask-propose", options, 0, e);
+	arrays_out_begin(&out, path, "refer.regions", "2", "pseudomask-propose", options, 0, e);
 	arrays_out_text(&out, "scene", fingerprint_text(&r->scene));
 	arrays_out_put(&out, st_vector("parent", ST_I32, r->tree.n, r->tree.parent));
 	arrays_out_put(&out, st_vector("score", ST_F32, r->tree.n, r->score));
+	arrays_out_list(&out, "classes", r->class_count ? r->classes : NULL, r->class_count);
+	arrays_out_put(&out, st_vector("chosen", ST_I32, (int64_t)r->chosen_count, r->chosen));
+	if (r->class_count)
+		arrays_out_put(&out, st_matrix("votes", ST_F32, (int64_t)r->chosen_count,
+					     (int64_t)r->class_count, r->votes));
 	arrays_out_put(&out, st_vector("node", ST_I32, (int64_t)r->tree.gaussians, r->tree.node));
 	return arrays_out_end(&out);
 }

@@ -8,6 +8,12 @@
 struct regions_file {
 	struct region_tree tree;
 	float *score; /* (tree.n) finite, at least 0 */
+	size_t chosen_count;
+	int32_t *chosen; /* (chosen_count) the regions that are likely things, the best first */
+	size_t class_count;
+	char **classes; /* (class_count) a detector's words */
+	float *votes;	/* (chosen_count,class_count) how far it finds each chosen region to be that, in [0,1]
+			 */
 	struct fingerprint scene;
 };
 

@@ -331,6 +331,16 @@ struct chooser *chooser_make(const struct choose_scene *s, unsigned parts, struc
 	return NULL;
 }
 
+void chooser_swap(struct chooser *c, size_t i, size_t k)
+{
+	arrangement_swap(&c->arrangement, i, k);
+}
+
+const struct parse *chooser_parse(const struct chooser *c, size_t sentence)
+{
+	return &c->vocabulary.parses[sentence];
+}
+
 int choose_with(struct chooser *c, const struct choose_sentence *sentences, size_t n, struct choice *choices,
 	float *probability, char *chosen, const struct choose_watch *watch, struct err *e)
 {

@@ -84,6 +84,12 @@ struct chooser;
 struct chooser *chooser_make(const struct choose_scene *s, unsigned parts, struct err *e);
 void chooser_free(struct chooser *c);
 
+/* Two objects change places: all that is seen of them, not what they are called. */
+void chooser_swap(struct chooser *c, size_t i, size_t k);
+
+/* What a sentence of the model was taken apart into. */
+const struct parse *chooser_parse(const struct chooser *c, size_t sentence);
+
 /* choose() with what is kept. */
 int choose_with(struct chooser *c, const struct choose_sentence *sentences, size_t n, struct choice *choices,
 	float *probability, char *chosen, const struct choose_watch *watch, struct err *e);

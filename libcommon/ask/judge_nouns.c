@@ -96,6 +96,8 @@ void judge_noun(struct meaning *m, int phrase)
 	if (head < 0)
 		return;
 	vocabulary_noun(m->vocabulary, m->sentence, head, match);
+	for (size_t o = 0; o < n && m->naming != 1; o++) /* those that are not found yet are no anchors */
+		match[o] *= m->arrangement->objects[o].is_there;
 	const int is_any = is_vague(&p->words[head]) || (is_shape(p, f, head) && largest(match, n) < 0.5);
 	for (size_t o = 0; o < n && is_any; o++)
 		match[o] = fmax(match[o], VAGUE_LEAST);

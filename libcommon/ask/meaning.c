@@ -37,8 +37,9 @@ void meaning_take_part(struct meaning *m)
 	if (m->without >> p->kind & 1)
 		return;
 	const int names = p->kind == MEANING_NOUN || p->kind == MEANING_ATTRIBUTE;
+	const double power = p->phrase && m->naming == 0 ? 1 : m->naming;
 	for (size_t o = 0; o < objects_of(m); o++)
-		fit[o] *= names && m->naming != 1 ? pow(p->value[o], m->naming) : p->value[o];
+		fit[o] *= names && power != 1 ? pow(p->value[o], power) : p->value[o];
 }
 
 static size_t parts_of(const struct parse *p)

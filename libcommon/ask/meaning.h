@@ -32,7 +32,8 @@ struct meaning {
 	struct vocabulary *vocabulary;
 	unsigned without; /* a bit 1 << meaning_kind for each kind of part that counts for nothing */
 	int has_surfaces; /* whether what Gaussians show of a look counts */
-	double naming;	  /* the power of nouns and attributes that are no colours; 1 */
+	double naming; /* the power of nouns and attributes that are no colours; 1; 0 for those of the thing
+			  itself alone */
 
 	/* Of the sentence that was judged last. */
 	const struct vocabulary_sentence *sentence;

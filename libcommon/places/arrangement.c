@@ -19,7 +19,6 @@ static const double degree0 = 0.28209479177387814;	/* the spherical harmonic of 
 void arrangement_free(struct arrangement *a)
 {
 	free(a->objects);
-	free(a->begin);
 	free(a->points);
 	free(a->along);
 	*a = (struct arrangement){0};
@@ -28,7 +27,7 @@ void arrangement_free(struct arrangement *a)
 /* Where the objects are, roughly: the mean of their points. */
 static void find_middle(const struct arrangement *a, double middle[3])
 {
-	const size_t n = a->begin[a->n];
+	const size_t n = a->point_count;
 
 	memset(middle, 0, 3 * sizeof *middle);
 	for (size_t i = 0; i < n; i++)
@@ -41,10 +40,11 @@ int arrangement_where(const struct arrangement *a, size_t object, double at[3])
 	double weight = 0;
 
 	memset(at, 0, 3 * sizeof *at);
-	for (size_t i = a->begin[object]; i < a->begin[object + 1]; i++) {
-		weight += a->points[i].weight;
+	const struct arranged_point *p = a->points + a->objects[object].begin;
+	for (size_t i = 0; i < a->objects[object].count; i++) {
+		weight += p[i].weight;
 		for (int k = 0; k < 3; k++)
-			at[k] += a->points[i].weight * a->points[i].at[k];
+			at[k] += p[i].weight * p[i].at[k];
 	}
 	for (int k = 0; k < 3 && weight > 0; k++)
 		at[k] /= weight;
@@ -150,7 +150,7 @@ static int take_points(struct arrangement *a, size_t o, const struct lifted *l, 
 	double *sorted = mem_alloc(own.n, sizeof *sorted, "objects", e);
 	struct surface_point *points = mem_alloc(POINTS + 1, sizeof *points, "objects", e);
 	int bad = !weight || !sorted || !points;
-	a->begin[o + 1] = a->begin[o];
+	a->objects[o].begin = a->point_count;
 	a->objects[o].is_there = own.n > 0;
 	if (!bad && own.n) {
 		for (size_t i = 0; i < own.n; i++)
@@ -159,15 +159,24 @@ static int take_points(struct arrangement *a, size_t o, const struct lifted *l, 
 		bad = take_looks(&a->objects[o], s, &own, step, weight, up, points, e);
 		for (size_t i = 0; i < own.n; i += step) {
 			const float *mean = s->means + 3 * (size_t)own.ids[i];
-			a->points[a->begin[o + 1]++] = (struct arranged_point){
+			a->points[a->point_count++] = (struct arranged_point){
 				{mean[0], mean[1], mean[2]}, weight[i] * own.weight[i]};
 		}
 	}
+	a->objects[o].count = a->point_count - a->objects[o].begin;
 	free(weight);
 	free(sorted);
 	free(points);
 	extent_free(&own);
 	return bad ? -1 : 0;
+}
+
+void arrangement_swap(struct arrangement *a, size_t i, size_t k)
+{
+	const struct arranged was = a->objects[i];
+
+	a->objects[i] = a->objects[k];
+	a->objects[k] = was;
 }
 
 /* How objects shine beside one another. */
@@ -186,12 +195,12 @@ static void compare_gloss(struct arrangement *a)
 
 static void take_box(struct arrangement *a, size_t o, double axes[3][3])
 {
-	const size_t n = a->begin[o + 1] - a->begin[o];
 	struct arranged *to = &a->objects[o];
+	const size_t n = to->count;
 
 	for (int k = 0; k < 3 && n; k++) {
 		for (size_t i = 0; i < n; i++) {
-			const struct arranged_point *p = &a->points[a->begin[o] + i];
+			const struct arranged_point *p = &a->points[to->begin + i];
 			a->along[i] = (struct quantile_item){vector_dot(axes[k], p->at), p->weight};
 		}
 		const struct object_span span = object_span(a->along, n, k == 2);
@@ -295,10 +304,9 @@ int arrangement_make(struct arrangement *a, const struct lifted *l, const struct
 
 	*a = (struct arrangement){.n = l->objects, .cameras = cameras};
 	a->objects = mem_zalloc(a->n, sizeof *a->objects, "objects", e);
-	a->begin = mem_zalloc(a->n + 1, sizeof *a->begin, "objects", e);
 	a->points = mem_alloc(a->n, (POINTS + 1) * sizeof *a->points, "objects", e);
 	a->along = mem_alloc(along > POINTS ? along : POINTS + 1, sizeof *a->along, "objects", e);
-	int bad = !a->objects || !a->begin || !a->points || !a->along;
+	int bad = !a->objects || !a->points || !a->along;
 	cameras_up(cameras, up);
 	for (size_t o = 0; o < a->n && !bad; o++)
 		bad = take_points(a, o, l, splats, up, e);

@@ -22,6 +22,7 @@ struct arranged {
 	double lab[3];		/* mean colour, CIE L*a*b* (D65) */
 	double colours[COLOUR_WORDS]; /* part of it that people would call so (lang/colours.h) */
 	struct surface surface;
+	size_t begin, count; /* its points */
 };
 
 /* A Gaussian of an object: where it is in the scene, and how much it counts. */
@@ -36,8 +37,8 @@ struct arrangement {
 	double spacing;		  /* median distance between two objects on the ground; > 0 */
 
 	const struct cameras *cameras;
-	size_t *begin;		       /* (n+1) points begin[o] to begin[o+1] are of object o */
-	struct arranged_point *points; /* (begin[n]) */
+	size_t point_count;
+	struct arranged_point *points; /* (point_count) */
 	struct quantile_item *along;   /* scratch */
 };
 
@@ -54,6 +55,9 @@ void arrangement_look(struct arrangement *a, const struct viewpoint *from);
 
 /* Where an object is in the scene, whatever it is seen from: the mean of its points. 0: it has none. */
 int arrangement_where(const struct arrangement *a, size_t object, double at[3]);
+
+/* Two objects change places, with all that is seen of them; the viewpoint stays. */
+void arrangement_swap(struct arrangement *a, size_t i, size_t k);
 void arrangement_free(struct arrangement *a);
 
 /* The logarithm of a length, which may be 0, and the mean of those of a box. */

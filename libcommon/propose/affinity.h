@@ -14,9 +14,10 @@
 
 #include <stdint.h>
 
-/* A detection in a view, in pixels of its weights; what is detected does not matter. */
+/* A detection in a view, in pixels of its weights; what is detected does not matter here. */
 struct affinity_box {
 	double left, top, right, bottom, score;
+	int32_t class; /* -1: not said */
 };
 
 struct affinity {

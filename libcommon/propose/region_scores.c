@@ -9,15 +9,18 @@
 
 void region_scores_free(struct region_scores *s)
 {
-	mem_free_all(s->image, s->box, s->views, s->area);
+	mem_free_all(s->image, s->box, s->views, s->area, s->votes);
 	*s = (struct region_scores){0};
 }
 
-int region_scores_init(struct region_scores *s, int32_t n, struct err *e)
+int region_scores_init(struct region_scores *s, int32_t n, int32_t classes, struct err *e)
 {
 	double **all[] = {&s->image, &s->box, &s->views, &s->area};
 
-	*s = (struct region_scores){.n = n};
+	*s = (struct region_scores){.n = n, .classes = classes};
+	s->votes = mem_zalloc((size_t)n, (size_t)classes * sizeof *s->votes, "regions", e);
+	if (!s->votes)
+		return -1;
 	for (size_t k = 0; k < sizeof all / sizeof *all; k++)
 		if (!(*all[k] = mem_zalloc((size_t)n, sizeof **all[k], "regions", e))) {
 			region_scores_free(s);
@@ -106,12 +109,34 @@ static int agree_all(const struct region_tree *t, const struct region_shown *sho
 	return 0;
 }
 
+/* The largest IoU^2 sqrt(score) of a box that a view shows around a region and a detected one; votes
+ * (classes) gets the largest IoU^2 score of each class added. best (classes) is scratch. */
+static double agree_boxes(const struct region_shown *shown, const struct affinity_box *boxes,
+	size_t box_count, int32_t classes, double *best, double *votes)
+{
+	double most = 0;
+
+	memset(best, 0, (size_t)classes * sizeof *best);
+	for (size_t b = 0; b < box_count; b++) {
+		const struct affinity_box *a = &boxes[b];
+		const double box[4] = {a->left, a->top, a->right, a->bottom};
+		const double iou = region_shown_agrees(shown, box), square = iou * iou;
+		most = fmax(most, square * sqrt(a->score));
+		if (a->class >= 0)
+			best[a->class] = fmax(best[a->class], square * a->score);
+	}
+	for (int32_t c = 0; c < classes; c++)
+		votes[c] += best[c];
+	return most;
+}
+
 int region_scores_view(struct region_scores *s, const struct region_tree *t, const int32_t *nodes,
 	const struct pieces *p, const struct affinity_box *boxes, size_t box_count, struct err *e)
 {
 	const double pixels = (double)p->height * p->width;
+	const size_t classes = (size_t)s->classes;
 	SCOPED struct region_shown *shown = mem_alloc((size_t)t->n, sizeof *shown, "regions", e);
-	SCOPED double *best = mem_zalloc((size_t)t->n, sizeof *best, "regions", e);
+	SCOPED double *best = mem_zalloc((size_t)t->n + classes, sizeof *best, "regions", e);
 
 	if (!shown || !best)
 		return -1;
@@ -119,27 +144,27 @@ int region_scores_view(struct region_scores *s, const struct region_tree *t, con
 		agree_all(t, shown, nodes, p, best, e))
 		return -1;
 	for (int32_t k = 0; k < t->n; k++) {
-		double box = 0;
 		s->area[k] += shown[k].area / pixels;
 		if (shown[k].area < LEAST_SHOWN * pixels)
 			continue;
-		for (size_t b = 0; b < box_count; b++) {
-			const struct affinity_box *a = &boxes[b];
-			const double box_of[4] = {a->left, a->top, a->right, a->bottom};
-			const double iou = region_shown_agrees(&shown[k], box_of);
-			box = fmax(box, iou * iou * sqrt(boxes[b].score));
-		}
 		s->image[k] += best[k] * best[k];
-		s->box[k] += box;
+		s->box[k] += agree_boxes(
+			&shown[k], boxes, box_count, s->classes, best + t->n, s->votes + (size_t)k * classes);
 		s->views[k]++;
 	}
 	return 0;
 }
 
-void region_scores_end(const struct region_scores *s, int has_boxes, double *score)
+void region_scores_end(struct region_scores *s, int has_boxes, double *score)
 {
-	for (int32_t k = 0; k < s->n; k++)
-		score[k] = s->views[k] > 0 ? (has_boxes ? s->box[k] : s->image[k]) / s->views[k] : 0;
+	const size_t classes = (size_t)s->classes;
+
+	for (int32_t k = 0; k < s->n; k++) {
+		const double views = fmax(s->views[k], 1);
+		score[k] = (has_boxes ? s->box[k] : s->image[k]) / views;
+		for (size_t c = 0; c < classes; c++)
+			s->votes[(size_t)k * classes + c] /= views;
+	}
 }
 
 void region_scores_value(const struct region_scores *s, const double *score, double *value)

@@ -2,7 +2,7 @@
  *
  * By boxes, in a view the largest IoU^2 sqrt(score) of the box around the region's mask and a detected one.
  * By the photograph, the largest IoU^2 of the mask and a segment of any level. Both are means over the views
- * that show enough of the region. */
+ * that show enough of the region. A vote for what it is, is by class the mean of the largest IoU^2 score. */
 #pragma once
 
 #include "base/err.h"
@@ -13,14 +13,15 @@
 #include <stdint.h>
 
 struct region_scores {
-	int32_t n;
+	int32_t n, classes;
 	double *image, *box; /* (n) sums over views */
 	double *views;	     /* (n) how many show it */
 	double *area;	     /* (n) pixels of all masks, in shares of a picture */
+	double *votes;	     /* (n,classes) sums over views; after region_scores_end means */
 };
 
 /* Returns 0, or -1 with *e set and nothing to free. */
-int region_scores_init(struct region_scores *s, int32_t n, struct err *e);
+int region_scores_init(struct region_scores *s, int32_t n, int32_t classes, struct err *e);
 void region_scores_free(struct region_scores *s);
 
 /* Adds a view: nodes (height,width) of region_tree_pixels, and the pieces of its photograph. Returns 0, or -1
@@ -29,7 +30,7 @@ int region_scores_view(struct region_scores *s, const struct region_tree *t, con
 	const struct pieces *p, const struct affinity_box *boxes, size_t box_count, struct err *e);
 
 /* score (n): by boxes where there were any, else by photographs. */
-void region_scores_end(const struct region_scores *s, int has_boxes, double *score);
+void region_scores_end(struct region_scores *s, int has_boxes, double *score);
 
 /* value (n) of a score, for regions none of which is in another: score^2 sqrt(area). The sum of the scores
  * alone is largest for the parts of things. */

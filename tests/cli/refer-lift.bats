@@ -63,6 +63,28 @@ not() { ! "$@"; }
 	refuses 3 "text.safetensors: tensor 'middle' is missing, by which sentences are taken apart: make the file anew"
 }
 
+@test "regions in place of masks: each object gets one, and no Gaussian is of two" {
+	"$BIN/pseudomask-propose" --weights "$made/weights" --regions regions -o /dev/null "$made/scene"
+	named() { "$BIN/refer-lift" --scene scene --text text.safetensors --regions regions "$@"; }
+	named -v -o model 2>log
+	[ "$(grep -c "is region-" log)" = 3 ]
+	"$BIN/gs-check" model
+	[ "$(meta model options)" = --regions ]
+	[ "$(meta model names | jq -r '.[]' | sort)" = "$(cat "$made/objects")" ]
+	[ -z "$(tensor model index d4 | tr ' ' '\n' | sort | uniq -d)" ]
+	named --threads 1 >one
+	cmp one model
+	run named --masks masks.jsonl -o x
+	[ "$status" = 2 ]
+	[ "${lines[0]}" = "refer-lift: --regions are in place of --weights, --masks, --spare and --names masks" ]
+	"$BIN/gs-synth" -q --seed 2 --objects 3 --views 6 --size 64x48 --gaussians 2000 -o other
+	"$BIN/gs-import" -q --cameras other/sparse/0 -o scene2 other/point_cloud.ply
+	run "$BIN/refer-lift" --scene scene2 --text text.safetensors --regions regions -o x
+	[ "$status" = 3 ]
+	[[ "$output" == "refer-lift: regions: "* ]]
+	[ ! -e x ]
+}
+
 @test "the option that changes the model is recorded in it" {
 	lift -o model
 	[ "$(meta model options)" = "--names sentences" ]

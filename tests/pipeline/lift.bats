@@ -109,9 +109,17 @@ not() { ! "$@"; }
 	cmp masks/lifted/model.safetensors kept
 	cmp masks/lifted/predictions.test.jsonl "$WORK/lifted/predictions.test.jsonl"
 	not grep -q pseudomask-select log
-	run lift CANDIDATES=
+	run lift CANDIDATES= IMAGES=
 	[ "$status" = 2 ]
 	grep -qF "CANDIDATES not set" <<<"$output"
+}
+
+@test "sentences and photographs without candidates: regions that the sentences name" {
+	cd "$BATS_TEST_TMPDIR"
+	WORK=$PWD/alone lift CANDIDATES= DETECTOR= >log 2>&1
+	not grep -q pseudomask-select log
+	"$BIN/gs-check" alone/lifted/{model.safetensors,predictions.test.jsonl}
+	jq -e '.pairs == 3' alone/lifted/predictions.test.score.json
 }
 
 @test "painted photographs and what their colours mean, in one command" {

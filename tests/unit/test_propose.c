@@ -328,7 +328,7 @@ static void test_affinity(uint64_t seed)
 		points[k] = (float)rng_uniform(&r);
 	for (size_t b = 0; b < BOXES; b++) {
 		const double x = rng_range(&r, 0, 10), y = rng_range(&r, 0, 10);
-		boxes[b] = (struct affinity_box){x, y, x + 6, y + 5, rng_range(&r, 0.1, 1)};
+		boxes[b] = (struct affinity_box){x, y, x + 6, y + 5, rng_range(&r, 0.1, 1), -1};
 	}
 	const struct view_matrix w = {
 		SIDE, SIDE, GAUSSIANS, {PIXELS, GAUSSIANS, indptr, index, weight}, NULL};
@@ -413,7 +413,7 @@ static void test_scores(void)
 	int32_t parent[3] = {-1, 0, 1}, end[3] = {0}, at[PIXELS], piece[PIXELS], segment[2 * PIECES_LEVELS];
 	struct region_tree t = {.n = 3, .parent = parent, .end = end};
 	const struct pieces p = {SIDE, SIDE, 2, piece, segment};
-	const struct affinity_box box = {0, 0, SIDE / 2, SIDE, 0.25};
+	const struct affinity_box box = {0, 0, SIDE / 2, SIDE, 0.25, 1};
 	struct region_scores s;
 	double score[3];
 	struct err e;
@@ -426,7 +426,7 @@ static void test_scores(void)
 	}
 	for (int k = 0; k < 2 * PIECES_LEVELS; k++)
 		segment[k] = k % 2;
-	CHECK(!region_scores_init(&s, 3, &e), "%s", e.message);
+	CHECK(!region_scores_init(&s, 3, 2, &e), "%s", e.message);
 	CHECK(!region_scores_view(&s, &t, at, &p, &box, 1, &e), "%s", e.message);
 	region_scores_end(&s, 0, score);
 	CHECK(fabs(score[0] - 0.25) < 1e-12 && fabs(score[1] - 1) < 1e-12 && fabs(score[2] - 0.25) < 1e-12,
