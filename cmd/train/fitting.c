@@ -246,10 +246,11 @@ static int finish(struct fitting *f, struct err *e)
 	SCOPED_BY(splats_free) struct splats s = {0};
 	double psnr, ssim;
 	int bad = !kept || fit_judge_all(&f->fit, tested, f->in.tested, &psnr, &ssim, e) ||
-		  fit_shown(&f->fit, 0, kept, NULL, e) ||
-		  fit_gaussians_give(&f->fit.gaussians, kept, &s, e) ||
-		  ply_write(&s, f->in.offset, f->options->output, e);
+		  fit_shown(&f->fit, 0, kept, NULL, e) || fit_gaussians_give(&f->fit.gaussians, kept, &s, e);
 
+	if (!bad && f->fit.state.iteration)
+		photographs_widen(&s, f->in.photographs, f->in.learned);
+	bad = bad || ply_write(&s, f->in.offset, f->options->output, e);
 	if (!bad)
 		report_note(f->to, 1, "%ld steps, %zu Gaussians, of which %zu are shown and written",
 			(long)f->fit.state.iteration, n, s.n);

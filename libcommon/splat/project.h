@@ -7,6 +7,8 @@
 
 #include <stdint.h>
 
+#define PROJECT_LOW_PASS 0.3 /* px^2, a variance that every projection gets */
+
 /* A Gaussian that may touch a pixel, a cache line of it. At (x, y), with dx = x - x_mean and dy = y - y_mean,
  *	u = l11 dx + l21 dy,  v = l22 dy,  a = 2^(log_opacity - u^2 - v^2):
  * a Cholesky factor of the inverse covariance, times log2(e)/2. Unlike the conic it has no cancellation in

@@ -11,7 +11,6 @@
 
 #include <math.h>
 
-#define PROJECT_LOW_PASS 0.3			  /* px^2 */
 #define PROJECT_HALF_LOG2E 0.72134752044448170368 /* e^(-q/2) = 2^(-this q) */
 
 enum { PROJECT_REALS = VEC_LANES / 2 }; /* in a register */

@@ -97,8 +97,39 @@ static double train(const struct conditions *with, size_t *n)
 	return fit_psnr(l.squares);
 }
 
+/* A view shows twice as large what a photograph of half its size did; what is not in the photograph stays. */
+static void check_widened(void)
+{
+	static const uint8_t rgb[3 * PIXELS];
+	const struct camera c = camera_at_origin(WIDTH, HEIGHT, 40);
+	struct splats s = random_splats(3, 2, 0.12, 0.5);
+	struct photograph p[2];
+	struct err e;
+
+	if (photograph_make(&p[0], &c, 0.5, rgb, HEIGHT, WIDTH, &e) ||
+		photograph_make(&p[1], &c, 1, rgb, HEIGHT, WIDTH, &e))
+		abort();
+	memcpy(s.means, (const float[]){0, 0, 5, 0, 0, -5}, 6 * sizeof(float));
+	memcpy(s.scales, (const float[]){0.1f, 0.01f, 1, 1, 1, 1}, 6 * sizeof(float));
+	photographs_widen(&s, p, 1);
+	for (int k = 0; k < 2; k++) {
+		const double old = k ? 0.01 : 0.1, photograph = pow(old * 20 / 5, 2) + 0.3,
+			     view = pow((double)s.scales[k] * 40 / 5, 2) + 0.3;
+		CHECK(fabs(view / (4 * photograph) - 1) < 1e-6, "axis %d: %.4f px^2 of %.4f", k, view,
+			4 * photograph);
+	}
+	CHECK(s.scales[3] == 1, "behind the camera: %g", s.scales[3]);
+	const float before = s.scales[0];
+	photographs_widen(&s, p, 2);
+	CHECK(s.scales[0] == before, "one whole photograph tells all: %g, not %g", s.scales[0], before);
+	photograph_free(&p[0]);
+	photograph_free(&p[1]);
+	splats_free(&s);
+}
+
 int main(void)
 {
+	check_widened();
 	struct conditions with = {.gains = {1, 1, 1, 1, 1}, .unit = 1, .capacity = 150};
 	size_t n, many;
 	const double plain = train(&with, &n);
