@@ -17,6 +17,8 @@ static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUES
 	CLI_SWITCH("all", &options.is_all,
 		"lifted models: every object, without --text; --ply then has a label for each Gaussian"),
 	CLI_TEXT("each", &options.each, "DIR", "with --all: a .ply of each object alone"),
+	{"min-probability", 0, CLI_REAL, &options.request.least, "P",
+		"lifted models: a sentence less likely to mean anything means nothing (default 0.5)", 0, 1},
 	CLI_TEXT("viewpoint", &options.request.viewpoint, "VIEW|x,y,z",
 		"lifted models: where sentences are said (default: the view that a sentence names, else between the training views)"),
 	CLI_TEXT("ply", &options.ply, "FILE",

@@ -266,11 +266,12 @@ static int know_words(struct chooser *c, struct err *e)
 	c->words = mem_alloc(v->kind_count, sizeof *c->words, "vocabulary", e);
 	if (!c->words)
 		return -1;
-	for (size_t k = 0; k < v->kind_count; k++)
-		c->words[k] = v->kinds[k].lemma;
 	c->parser = *c->scene->parser;
 	c->parser.known = c->words;
-	c->parser.known_count = (int)v->kind_count;
+	c->parser.known_count = 0;
+	for (size_t k = 0; k < v->kind_count; k++)
+		if (!strchr(v->kinds[k].lemma, ' '))
+			c->words[c->parser.known_count++] = v->kinds[k].lemma;
 	return 0;
 }
 

@@ -3,8 +3,10 @@
 #include "ask/judge_words.h"
 #include "lang/colours.h"
 #include "lang/kinds.h"
+#include "lang/tokens.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 /* "the red one", "the other two": a thing of the kind that was spoken of. */
@@ -73,11 +75,35 @@ static int is_colour(const struct parse *p, int head)
 {
 	static const char *const articles[] = {"a", "an", "any", "my", "the", "your", NULL};
 	struct things_rows rows;
+	char two[2 * TOKEN_LENGTH];
 
 	if (colour_word(p->words[head].lemma) < 0)
 		return 0;
+	snprintf(two, sizeof two, "%s %s", head ? p->words[head - 1].lemma : "", p->words[head].lemma);
+	things_find(&rows, two); /* "ice cream" */
+	if (rows.n)
+		return 0;
 	things_find(&rows, p->words[head].lemma);
 	return !rows.n || !parse_word_is(p, head - 1, articles);
+}
+
+/* "Black puffer coat": where nothing is called by what was taken for the noun, the noun after it. match (O)
+ * in and out. Returns the one that counts. */
+static int judge_last(struct meaning *m, const struct parse_phrase *f, int head, double *match)
+{
+	const struct parse *p = m->sentence->parse;
+	const int next = head + 1;
+	double *other = m->scratch + 8 * objects_of(m);
+
+	if (largest(match, objects_of(m)) >= 0.5 ||
+		!(parse_list_has(&p->unexplained, next) || parse_list_has(&f->attributes, next)) ||
+		!wordnet_is_noun(p->words[next].lemma))
+		return head;
+	vocabulary_noun(m->vocabulary, m->sentence, next, other);
+	if (largest(other, objects_of(m)) < 0.5)
+		return head;
+	memcpy(match, other, objects_of(m) * sizeof *match);
+	return next;
 }
 
 void judge_noun(struct meaning *m, int phrase)
@@ -96,6 +122,7 @@ void judge_noun(struct meaning *m, int phrase)
 	if (head < 0)
 		return;
 	vocabulary_noun(m->vocabulary, m->sentence, head, match);
+	head = judge_last(m, f, head, match);
 	for (size_t o = 0; o < n && m->naming != 1; o++) /* those that are not found yet are no anchors */
 		match[o] *= m->arrangement->objects[o].is_there;
 	const int is_any = is_vague(&p->words[head]) || (is_shape(p, f, head) && largest(match, n) < 0.5);

@@ -17,9 +17,10 @@ void vocabulary_free(struct vocabulary *v)
 		parse_free(&v->parses[r]);
 	mem_free_strings(v->heads, v->lifted->objects);
 	mem_free_strings(v->contents, v->lifted->objects);
+	mem_free_strings(v->wholes, v->lifted->objects);
 	mem_free_all(v->parses, v->mean, v->sentence_mean, v->items, v->vectors, v->sentences, v->kinds,
-		v->content_kinds, v->head_kinds, v->scratch, v->about, v->kin, v->word, v->other,
-		v->line_begin, v->line_named, v->lines, v->cosine);
+		v->content_kinds, v->head_kinds, v->whole_kinds, v->scratch, v->about, v->kin, v->word,
+		v->other, v->line_begin, v->line_named, v->lines, v->cosine);
 	things_vectors_free(&v->things);
 	*v = (struct vocabulary){0};
 }
@@ -207,12 +208,6 @@ static int share_noun(const struct vocabulary *v, size_t a, size_t b)
 	return 0;
 }
 
-static int are_akin(const struct vocabulary_kind *a, const struct vocabulary_kind *b)
-{
-	return a == b || naming_fits(&a->naming, &b->naming, 0) > 0 ||
-	       naming_fits(&b->naming, &a->naming, 0) > 0;
-}
-
 /* Whether two objects were called by other nouns than this one, and none of them are akin. */
 static int differ_but_for(const struct vocabulary *v, size_t a, size_t b, size_t kind)
 {
@@ -226,7 +221,8 @@ static int differ_but_for(const struct vocabulary *v, size_t a, size_t b, size_t
 				q->kind == kind || closed_is(p->lemma, CLOSED_GENERIC) ||
 				closed_is(q->lemma, CLOSED_GENERIC))
 				continue;
-			if (are_akin(&v->kinds[p->kind], &v->kinds[q->kind]))
+			const struct naming *x = &v->kinds[p->kind].naming, *y = &v->kinds[q->kind].naming;
+			if (x == y || naming_fits(x, y, 0) > 0 || naming_fits(y, x, 0) > 0)
 				return 0;
 			compared = 1;
 		}
@@ -317,6 +313,26 @@ static char *lower_copy(const char *word, size_t length, struct err *e)
 	return copy;
 }
 
+/* The longest end of a name that is known: "pencil case" of "red pencil case". */
+static int read_whole(struct vocabulary *v, size_t o, struct err *e)
+{
+	const char *const name = v->lifted->names[o];
+	size_t n = strlen(name);
+	struct naming known;
+
+	while (n && (strchr(" -_", name[n - 1]) || (name[n - 1] >= '0' && name[n - 1] <= '9')))
+		n--;
+	v->wholes[o] = lower_copy(name, n, e);
+	if (!v->wholes[o])
+		return -1;
+	for (char *p = v->wholes[o]; *p; p++)
+		*p = (char)(strchr("-_", *p) ? ' ' : *p);
+	for (char *gap; naming_of_thing(&known, v->wholes[o]),
+		!naming_is_known(&known) && (gap = strchr(v->wholes[o], ' '));)
+		memmove(v->wholes[o], gap + 1, strlen(gap));
+	return add_kind(v, v->wholes[o], &v->whole_kinds[o], e);
+}
+
 /* The nouns that objects' names end in, and what is in them. */
 static int read_names(struct vocabulary *v, struct err *e)
 {
@@ -342,7 +358,7 @@ static int read_names(struct vocabulary *v, struct err *e)
 				: 0,
 			e);
 		if (!v->contents[o] || add_kind(v, v->heads[o], &v->head_kinds[o], e) ||
-			add_kind(v, v->contents[o], &v->content_kinds[o], e))
+			add_kind(v, v->contents[o], &v->content_kinds[o], e) || read_whole(v, o, e))
 			return -1;
 	}
 	return 0;
@@ -363,9 +379,12 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	v->head_kinds = mem_alloc(l->objects, sizeof *v->head_kinds, "vocabulary", e);
 	v->contents = mem_zalloc(l->objects, sizeof *v->contents, "vocabulary", e);
 	v->content_kinds = mem_alloc(l->objects, sizeof *v->content_kinds, "vocabulary", e);
+	v->wholes = mem_zalloc(l->objects, sizeof *v->wholes, "vocabulary", e);
+	v->whole_kinds = mem_alloc(l->objects, sizeof *v->whole_kinds, "vocabulary", e);
 	v->other = mem_alloc(l->objects, sizeof *v->other, "vocabulary", e);
-	if (!v->heads || !v->head_kinds || !v->contents || !v->content_kinds || !v->other || !v->parses ||
-		!v->mean || !v->sentence_mean || !v->sentences || !v->scratch || !v->word)
+	if (!v->heads || !v->head_kinds || !v->contents || !v->content_kinds || !v->wholes ||
+		!v->whole_kinds || !v->other || !v->parses || !v->mean || !v->sentence_mean ||
+		!v->sentences || !v->scratch || !v->word)
 		return -1;
 	find_means(v);
 	if (read_names(v, e) || read_sentences(v, parser, e))

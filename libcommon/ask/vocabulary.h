@@ -55,7 +55,10 @@ struct vocabulary {
 	struct vocabulary_kind *kinds; /* of different lemmas */
 	char **heads;	    /* (O) the last word of an object's name that is no number, lower case */
 	size_t *head_kinds; /* (O) into kinds */
-	char **contents;    /* (O) the word before it, where it is a container: of an "eraser box"; else "" */
+	char **wholes; /* (O) the longest end of a name of two words or more that is known, "mouse pad"; or ""
+			*/
+	size_t *whole_kinds; /* (O) into kinds */
+	char **contents; /* (O) the word before it, where it is a container: of an "eraser box"; else "" */
 	size_t *content_kinds;	      /* (O) into kinds */
 	int has_names, has_knowledge; /* whether names, and WordNet with lang/kinds.h and things.h, count: 1,
 					 for the caller to set */

@@ -13,12 +13,20 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Whether a word is a word of a name: 2 the last one that is no number, 1 another. */
+/* Whether a word is a word of a name: 2 the last one that is no number, or the name without its gaps, 1
+ * another.
+ */
 static int is_in_name(const char *word, const char *name)
 {
 	const size_t length = strlen(word);
+	const char *joined = word;
 	int is = 0;
 
+	for (const char *p = name; joined && (*p || *joined); p++)
+		if (!*p || !strchr(" -_", *p))
+			joined = *joined && *joined == vocabulary_lower(*p) ? joined + 1 : NULL;
+	if (joined)
+		return 2;
 	for (const char *p = name; *p; p += strspn(p, " -_")) {
 		size_t n = strcspn(p, " -_"), same = 0;
 		while (same < n && same < length && vocabulary_lower(p[same]) == word[same])
@@ -42,6 +50,13 @@ static double worth(double cosine, double half, double soft)
 static double knowledge(const struct vocabulary *v, const struct naming *word, size_t kind, int is_general)
 {
 	return v->has_knowledge ? naming_fits(word, &v->kinds[kind].naming, is_general) : 0;
+}
+
+/* The same of what a thing is called by its name. */
+static double knowledge_of_name(const struct vocabulary *v, const struct naming *word, size_t object)
+{
+	return fmax(
+		knowledge(v, word, v->head_kinds[object], 0), knowledge(v, word, v->whole_kinds[object], 0));
 }
 
 int vocabulary_is_furniture(const struct vocabulary *v, size_t object)
@@ -104,8 +119,22 @@ static int is_said_of(const struct vocabulary *v, const char *lemma, size_t obje
 	return 0;
 }
 
+/* Whether a kind that has a name of two words is one that people call by its second word alone: it is for the
+ * same as the object, as a gift bag is, and less so where WordNet has it as a kind of that. */
+static int is_sort_of(
+	const struct vocabulary *v, const struct naming *two, const struct naming *second, size_t object)
+{
+	const size_t begin = v->line_begin[object];
+	const size_t end = v->has_names ? v->line_begin[object + 1] : v->line_named[object];
+	const double alike = things_vectors_between(
+		&v->things, two->things.row, (size_t)two->things.n, v->lines + begin, end - begin);
+	const int is_kind = wordnet_is_above(&second->noun, &two->noun);
+
+	return alike < 0 ? is_kind : alike > (is_kind ? USES_ALIKE_KIND : USES_ALIKE);
+}
+
 /* A kind that has a name of two words is another thing than what its second word alone names, a tea bag in a
- * room with a red bag, unless it is a kind of that, as a water bottle is of a bottle that nothing is said of.
+ * room with a red bag, unless it is a sort of that, as a water bottle is of a bottle that nothing is said of.
  */
 static void judge_compound(struct vocabulary *v, const struct parse *p, int w, double *match)
 {
@@ -116,15 +145,14 @@ static void judge_compound(struct vocabulary *v, const struct parse *p, int w, d
 	if (first < 0)
 		return;
 	naming_of_word(&second, p->words[w].lemma);
-	const int is_kind = wordnet_is_above(&second.noun, &known.noun);
 	for (size_t o = 0; o < v->lifted->objects; o++) {
 		if (is_said_of(v, p->words[first].lemma, o))
 			continue;
 		const char *content = v->contents[o];
 		const int is_plain = !*content || colour_word(content) >= 0;
-		match[o] *= is_kind && is_plain ? KIND_WORTH : COMPOUND_WORTH;
+		match[o] *= is_plain && is_sort_of(v, &known, &second, o) ? KIND_WORTH : COMPOUND_WORTH;
 		if (v->has_names)
-			match[o] = fmax(match[o], knowledge(v, &known, v->head_kinds[o], 0));
+			match[o] = fmax(match[o], knowledge_of_name(v, &known, o));
 		for (size_t i = 0; i < v->n; i++)
 			if (v->items[i].object == o && v->items[i].role == VOCABULARY_NOUN)
 				match[o] = fmax(match[o],
@@ -146,8 +174,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
 		match[o] = named == 2;
 		if (v->has_names && named < 2)
-			match[o] = fmax(fmax(match[o], holds(v, &known, o)),
-				knowledge(v, &known, v->head_kinds[o], 0));
+			match[o] = fmax(fmax(match[o], holds(v, &known, o)), knowledge_of_name(v, &known, o));
 	}
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
@@ -157,7 +184,8 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		double x = is_same;
 		if (!is_same) {
 			x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
-			x = fmax(x, knowledge(v, &known, item->kind, item->is_general));
+			x = fmax(x * (known.noun.n ? VECTOR_WORTH : 1),
+				knowledge(v, &known, item->kind, item->is_general));
 		}
 		match[item->object] = fmax(match[item->object], x);
 	}

@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LONGEST_NAME = 64 };
-
 void vocabulary_about(
 	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match)
 {
@@ -37,25 +35,6 @@ static int add_lines(struct vocabulary *v, size_t object, const struct things_ro
 	return 0;
 }
 
-/* The lines of a name, or of what is left of it without its first words: "pencil case" of "red pencil case".
- */
-static void find_name(const char *name, struct things_rows *rows)
-{
-	char lower[LONGEST_NAME];
-	size_t n = strlen(name);
-
-	rows->n = 0;
-	while (n && (strchr(" -_", name[n - 1]) || (name[n - 1] >= '0' && name[n - 1] <= '9')))
-		n--;
-	if (n >= sizeof lower)
-		return;
-	for (size_t i = 0; i < n; i++)
-		lower[i] = strchr("-_", name[i]) ? ' ' : vocabulary_lower(name[i]);
-	lower[n] = 0;
-	for (const char *from = lower; from && !rows->n; from = strchr(from, ' '))
-		things_find(rows, from += *from == ' ');
-}
-
 int vocabulary_find_lines(struct vocabulary *v, const struct parser *parser, struct err *e)
 {
 	const struct lifted *l = v->lifted;
@@ -66,7 +45,7 @@ int vocabulary_find_lines(struct vocabulary *v, const struct parser *parser, str
 		return -1;
 	v->cosine = mem_alloc((size_t)v->things.lines, sizeof *v->cosine, "vocabulary", e);
 	for (size_t o = 0; o < l->objects; o++) {
-		struct things_rows rows;
+		const struct things_rows *whole = &v->kinds[v->whole_kinds[o]].naming.things;
 		v->line_begin[o] = v->line_count;
 		for (size_t i = 0; i < v->n; i++) {
 			const struct vocabulary_item *item = &v->items[i];
@@ -75,8 +54,7 @@ int vocabulary_find_lines(struct vocabulary *v, const struct parser *parser, str
 				return -1;
 		}
 		v->line_named[o] = v->line_count;
-		find_name(l->names[o], &rows);
-		if (add_lines(v, o, &rows, e) ||
+		if (add_lines(v, o, whole->n ? whole : &v->kinds[v->head_kinds[o]].naming.things, e) ||
 			(*v->contents[o] && add_lines(v, o, &v->kinds[v->content_kinds[o]].naming.things, e)))
 			return -1;
 	}

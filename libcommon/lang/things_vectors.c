@@ -41,6 +41,23 @@ void things_vectors_free(struct things_vectors *t)
 	*t = (struct things_vectors){0};
 }
 
+double things_vectors_between(
+	const struct things_vectors *t, const int *a, size_t a_n, const int *b, size_t b_n)
+{
+	const size_t width = (size_t)t->width;
+	double best = -1;
+
+	for (size_t i = 0; i < a_n && t->lines; i++)
+		for (size_t k = 0; k < b_n; k++) {
+			const int8_t *x = t->of + (size_t)a[i] * width, *y = t->of + (size_t)b[k] * width;
+			int sum = 0;
+			for (size_t d = 0; d < width; d++)
+				sum += x[d] * y[d];
+			best = fmax(best, (double)sum / (double)t->length[a[i]] / (double)t->length[b[k]]);
+		}
+	return best;
+}
+
 void things_vectors_cosines(const struct things_vectors *t, const float *direction, float *cosine)
 {
 	for (int i = 0; i < t->lines; i++) {

@@ -21,5 +21,10 @@ struct things_vectors {
 int things_vectors_open(struct things_vectors *t, const char *encoder, int width, struct err *e);
 void things_vectors_free(struct things_vectors *t);
 
+/* The best cosine of a line of one with a line of the other: how far they are for the same; -1 where one has
+ * none. */
+double things_vectors_between(
+	const struct things_vectors *t, const int *a, size_t a_n, const int *b, size_t b_n);
+
 /* cosine (lines) of a direction (width) of length 1 with each. */
 void things_vectors_cosines(const struct things_vectors *t, const float *direction, float *cosine);

@@ -137,17 +137,19 @@ void wordnet_find(struct wordnet_noun *to, const char *lemma)
 void wordnet_find_thing(struct wordnet_noun *to, const char *lemma)
 {
 	static long made, food;
-	int kept = 0;
+	float all = 0, chance[WORDNET_SENSES];
 
 	wordnet_find(to, lemma);
 	if ((!made && !synsets_of("artifact", NOUN, &made, 1)) ||
-		(!food && !synsets_of("food", NOUN, &food, 1)) || !is_kind_of(to, 0, made))
+		(!food && !synsets_of("food", NOUN, &food, 1)))
 		return;
-	const struct wordnet_noun all = *to;
-	for (int i = 0; i < all.n; i++)
-		if (!is_kind_of(&all, all.up[i].sense, food))
-			to->up[kept++] = all.up[i];
-	to->n = kept;
+	const int is_made = is_kind_of(to, 0, made);
+	for (int i = 0; i < WORDNET_SENSES; i++) {
+		chance[i] = is_thing(to, i) && !(is_made && is_kind_of(to, i, food)) ? to->chance[i] : 0;
+		all += chance[i];
+	}
+	for (int i = 0; i < WORDNET_SENSES && all > 0; i++)
+		to->chance[i] = chance[i] / all;
 }
 
 int wordnet_is_noun(const char *lemma)

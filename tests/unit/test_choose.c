@@ -111,6 +111,14 @@ static void kinds_of_two_words(void)
 	ask("the voice box", CHOOSE_ALL);
 	CHECK(mug > beer && beer > 0.5 && choice.there < 0.5, "a mug is there %g, a kind of it %g, no box %g",
 		mug, beer, choice.there);
+	ask("the ice cream", CHOOSE_ALL);
+	CHECK(choice.there < 0.1, "no cream thing: %g", choice.there);
+	char *old[OBJECTS];
+	memcpy(old, names, sizeof old);
+	names[3] = "mouse pad";
+	CHECK(ask("the mousepad", CHOOSE_ALL) == 3 && choice.there > 0.9, "joined: %g", choice.there);
+	CHECK(ask("the mouse mat", CHOOSE_ALL) == 3 && choice.there > 0.5, "its line: %g", choice.there);
+	memcpy(names, old, sizeof old);
 }
 
 /* What is left out may be an attribute alone; "the other one" is of the kind that was spoken of. */

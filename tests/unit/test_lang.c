@@ -197,9 +197,9 @@ static void wordnet(void)
 	}
 	CHECK(fits("food", "dish") > 0.05 && fits_thing("food", "dish") == 0,
 		"a dish of a scene is no food: %g, %g", fits("food", "dish"), fits_thing("food", "dish"));
-	CHECK(fits_thing("vessel", "dish") == fits("vessel", "dish") &&
-			fits_thing("food", "soup") == fits("food", "soup"),
-		"what is made fits as before, and what is only eaten");
+	CHECK(fits_thing("vessel", "dish") >= fits("vessel", "dish") &&
+			fits_thing("food", "soup") >= fits("food", "soup"),
+		"what is made fits no less, and what is only eaten");
 	CHECK(fits("furniture", "chair") > 0.5 && fits("chair", "furniture") == 0 &&
 			fits("table", "chair") == 0,
 		"what a thing is a kind of names it, a kind of it and a sister do not: %g",

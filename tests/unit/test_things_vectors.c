@@ -54,6 +54,11 @@ static void table(void)
 	}
 	CHECK(fabs((double)cosine[line_of("kettle")] - 1) < 1e-5, "a line with itself");
 	CHECK(cosine[line_of("teapot")] > cosine[line_of("hammer")], "tea is nearer than nails");
+	const int three[] = {line_of("hammer"), line_of("teapot"), line_of("saw")},
+		  kettle = line_of("kettle");
+	CHECK(fabs(things_vectors_between(&all, &kettle, 1, three, 3) - (double)cosine[three[1]]) < 1e-5 &&
+			things_vectors_between(&all, &kettle, 1, three, 0) < 0,
+		"the best of several lines");
 	CHECK(!things_vectors_open(&other, "0123456789abcdef", WIDTH, &e) && !other.lines, "another encoder");
 	CHECK(!things_vectors_open(&other, NULL, WIDTH, &e) && !other.lines, "nobody knows which");
 	CHECK(!things_vectors_open(&other, encoder, WIDTH - 1, &e) && !other.lines, "another width");
