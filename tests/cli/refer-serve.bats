@@ -249,6 +249,26 @@ refused() {
 	[ "$status" = 2 ] && [ "${lines[0]}" = "refer-serve: --address: 'example.com' is no number of an interface, such as 127.0.0.1" ]
 }
 
+@test "ask.mk makes what a click needs, once, and opens the page" {
+	open=(make -s -f "$BATS_TEST_DIRNAME/../../pipelines/ask.mk" BIN="$BIN" BERT="$PWD/encoder" SCENE=opened SPLATS=point_cloud.ply CAMERAS=sparse/0
+		IMAGES=images DETECTOR= PORT=0)
+	"${open[@]}" >opened.out 2>&1 3>&- &
+	for _ in $(seq 600); do
+		! grep -q '^http://' opened.out || break
+		sleep 0.1
+	done
+	curl -s "$(sed -n 's,/#.*,,p' opened.out)/v1/things" | jq -e '.can_label and (.things == [])'
+	pkill -f -- "--port 0 opened"
+	run grep -c propose opened.out
+	"${open[@]}" >again.out 2>&1 3>&- &
+	for _ in $(seq 600); do
+		! grep -q '^http://' again.out || break
+		sleep 0.1
+	done
+	pkill -f -- "--port 0 opened"
+	[ "$output" -gt 0 ] && [ "$(grep -c '^pseudomask-propose (' again.out)" = 0 ]
+}
+
 @test "the page and its scripts" {
 	curl -s -D head "$ADDRESS/" | grep -q '<!DOCTYPE html>'
 	grep -qi "^content-security-policy: default-src 'none'" head

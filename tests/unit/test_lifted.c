@@ -70,6 +70,41 @@ static void without_middle_and_cuts(void)
 	lifted_free(&out);
 }
 
+/* To a copy of the example from a file: an object of the name of its third, and one that it has not. */
+static void another_model_is_added(void)
+{
+	static int64_t more_indptr[] = {0, 1, 3}, more_offsets[] = {0, 1, 2};
+	static int32_t more_index[] = {6, 2, 3}, more_object[] = {1, 0};
+	static float more_share[] = {0.5f, 1, 1}, more_sure[] = {1, 1}, more_words[] = {4, 5, 6, 7};
+	static char *more_names[] = {"\xe7\x93\xb6", "lid"}, *more_texts[] = {"lid", "the bottle"};
+	const struct lifted in = example(), more = {7, 2, more_names, more_sure, more_indptr, more_index,
+						    more_share, 2, 2, more_object, more_texts, more_texts,
+						    more_offsets, more_words, more_words, NULL};
+	struct lifted l;
+	struct origin of;
+	struct err e = {0};
+
+	CHECK(!lifted_write(&in, &(struct origin){0}, path, "", &e) && !lifted_read(&l, &of, path, &e), "%s",
+		e.message);
+	if (!CHECK(!lifted_add(&l, &more, &e), "%s", e.message))
+		return;
+	CHECK(l.objects == 4 && !strcmp(l.names[0], "red cup") && !strcmp(l.names[2], names[2]) &&
+			!strcmp(l.names[3], "lid"),
+		"%zu objects", l.objects);
+	CHECK(l.indptr[1] == 2 && l.indptr[2] == 2 && l.indptr[3] == 3 && l.indptr[4] == 5 &&
+			l.index[2] == 6 && l.index[4] == 3,
+		"Gaussians");
+	CHECK(l.cut[0] == cut[0] && l.cut[3] == LIFTED_CUT && l.share[2] == 0.5f, "cuts and shares");
+	/* the sentences of the third object of before are gone with it */
+	CHECK(l.sentences == 3 && l.object[0] == 0 && l.object[1] == 3 && l.object[2] == 2 &&
+			!strcmp(l.texts[2], "the bottle"),
+		"%zu sentences", l.sentences);
+	CHECK(l.offsets[1] == 0 && l.offsets[2] == 1 && l.offsets[3] == 2 && l.words[2] == 6 &&
+			lifted_middle(&l, 1)[1] == 5,
+		"words");
+	lifted_free(&l);
+}
+
 static void responses_are_shares_above_the_cut(void)
 {
 	const struct lifted l = example();
@@ -109,6 +144,7 @@ int main(void)
 	close(file);
 	round_trip();
 	without_middle_and_cuts();
+	another_model_is_added();
 	responses_are_shares_above_the_cut();
 	refuses_to_write(&words[3], NAN, ": tensor 'words': item 3 is not finite");
 	refuses_to_write(&middle[1], NAN, ": tensor 'middle': item 1 is not finite");
