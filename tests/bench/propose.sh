@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Usage: [DATA=DIR SPLATS=FILE BOXES=FILE [TEST_VIEWS=LIST]] [SEEDS="71 72"] [SCENES="diner toys"] [BIN=build/bin] [KEEP=DIR] tests/bench/propose.sh
+# Usage: [DATA=DIR SPLATS=FILE BOXES=FILE [TEST_VIEWS=LIST]] [SEEDS="71 72"] [SCENES="diner toys"] [DETECTOR=DIR] [BIN=build/bin] [KEEP=DIR] tests/bench/propose.sh
 #
 # How well regions without names fit things, each thing by its best region (miou-score --best): of a scene in the desk's layout
 # (sparse/0, images, truth.jsonl), by the photographs alone and, with BOXES, by a detector's boxes; in the labelled views for
-# testing, or in all labelled ones where there are none. Without DATA of gs-synth's scenes, by photographs, ten regions a thing.
+# testing, or in all labelled ones where there are none. Without DATA of gs-synth's scenes, by the
+# boxes of a DETECTOR if there is one, ten regions a thing.
 # Prints mIoU and the shares of things and views with an IoU of 0.5 and 0.75, for 110 regions and for 40 of which none is in
 # another; and the time and memory of making them. Of real scenes also what clicks mean, where `make benches` has built
 # bench_pick beside BIN. KEEP keeps scenes and weights for the next run.
@@ -51,8 +52,10 @@ for scene in ${SCENES:-diner toys}; do
 		dir=$keep/$scene-$seed
 		[ -e "$dir/truth.jsonl" ] || "$BIN/gs-synth" -q --scene "$scene" --seed "$seed" -o "$dir"
 		weighed "$dir" 0.5 "$dir/point_cloud.ply" "$dir/sparse/0" "$dir/images" "$(cat "$dir/test-views")"
+		[ -z "${DETECTOR:-}" ] || [ -e "$dir/found.jsonl" ] || "$BIN/box-detect" -q --model "$DETECTOR" --scene "$dir/scene" -o "$dir/found.jsonl"
+		boxes=(${DETECTOR:+--boxes "$dir/found.jsonl"})
 		things=$(jq -r .object "$dir/truth.jsonl" | sort -u | wc -l)
-		row "$scene $seed, nested" "$dir" "$dir/truth.jsonl" test --most $((10 * things))
-		row "$scene $seed, disjoint" "$dir" "$dir/truth.jsonl" test
+		row "$scene $seed, nested" "$dir" "$dir/truth.jsonl" test "${boxes[@]}" --most $((10 * things))
+		row "$scene $seed, disjoint" "$dir" "$dir/truth.jsonl" test "${boxes[@]}" --disjoint
 	done
 done
