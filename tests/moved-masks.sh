@@ -39,7 +39,7 @@ row() {
 	for seed; do
 		jq -c --argjson h 120 --argjson w 160 "$runs $filter" "$seed/truth.jsonl" >masks
 		refer-lift -vv --scene "$seed/scene" --weights "$seed/weights" --text "$seed/text" --masks masks -o model 2>err || true
-		sed -n 's/.*each mask is by \([0-9.]*\).*/\1/p' err >>figures
+		sed -n 's/.*each of [0-9]* masks is by \([0-9.]*\).*/\1/p' err >>figures
 		! grep -q 'where those of other views show it' err || told=$((told + 1))
 	done
 	printf '| %s | %s to %s | %d of %d |\n' "$what" "$(sort -n figures | head -n 1)" "$(sort -n figures | tail -n 1)" "$told" $#

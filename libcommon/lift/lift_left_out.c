@@ -122,7 +122,7 @@ static void revote(struct lift_objects *l, size_t object)
 	}
 }
 
-int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struct err *e)
+int lift_left_out(struct lift_objects *l, size_t named, double *agreement, size_t *masks, struct err *e)
 {
 	size_t most = 0, n = 0;
 	struct room r = {.who = mem_alloc(l->gaussians, sizeof *r.who, "shares", e),
@@ -146,6 +146,7 @@ int lift_left_out(struct lift_objects *l, size_t named, double *agreement, struc
 	}
 	if (n)
 		qsort(found, n, sizeof *found, compare_double);
+	*masks = n;
 	*agreement = n >= LIFT_LEFT_OUT_MASKS ? quantile_sorted(found, n, 0.5) : NAN;
 	mem_free_all(r.who, r.place, r.in, r.all, r.own);
 	return bad ? -1 : 0;
