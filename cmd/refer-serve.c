@@ -52,6 +52,8 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	if (!options.is_stdio)
 		pthread_sigmask(SIG_BLOCK, &ends, NULL);
 	options.serving.run = c->operands[0];
+	if (options.serving.labels && !strcmp(options.serving.labels, "-"))
+		cli_usage(c, "--labels must name a file");
 	if (serving_open(&s, &options.serving, to, e))
 		return -1;
 	return options.is_stdio ? serving_lines(&s, stdout, e) : serving_http(&s, &at, stdout, e);

@@ -1,5 +1,5 @@
 # Opens a scene in the browser: to ask it, to look at it, and to name its things by clicks. What lift.mk makes is made first: with
-# MASKS, or SENTENCES and CANDIDATES, the model; else the regions that a click means. Nothing is made twice.
+# MASKS or SENTENCES the model; else the regions that a click means. Nothing is made twice.
 #
 #	make -f pipelines/ask.mk SCENE=work/kitchen SPLATS=kitchen.ply CAMERAS=sparse/0 IMAGES=images
 #
@@ -15,7 +15,7 @@ MAKEOVERRIDES := $(filter-out PORT=%,$(MAKEOVERRIDES))
 .PHONY: ask
 .DEFAULT_GOAL := ask
 ask:
-	@$(MAKE) --no-print-directory -f $(here)lift.mk $(if $(MASKS)$(CANDIDATES),lifted,regions)
+	@$(MAKE) --no-print-directory -f $(here)lift.mk $(if $(MASKS)$(SENTENCES),lifted,regions)
 	@$(if $(wildcard $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/refersplat/viewer/.),,echo "without 3D: 'make viewer' fetches what shows it")
 	@exec $(tool)refer-serve --encoder $(call quoted,BERT) --port $(call quoted,PORT) $(SCENE)
 

@@ -14,6 +14,7 @@
 #include "formats/scene/lifted.h"
 
 #include <math.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -259,6 +260,19 @@ static int read_again(struct serving *s, const struct masks *all, struct err *e)
 	asking_close(f.asking);
 	free(f.asking);
 	return bad;
+}
+
+int serving_labels_refresh(struct serving *s, struct err *e)
+{
+	SCOPED char *model = part(s, "lifted/labels.safetensors", e);
+	SCOPED_BY(masks_free) struct masks all = {0};
+	struct stat labels, lifted;
+
+	if (!model || !s->weights || stat(s->labels, &labels))
+		return model ? 0 : -1;
+	if (!stat(model, &lifted) && lifted.st_mtim.tv_sec >= labels.st_mtim.tv_sec)
+		return 0;
+	return read_labels(s, &all, e) || (all.n && (lift(s, &all, e) || read_again(s, &all, e))) ? -1 : 0;
 }
 
 /* Nobody else writes the labels until *out is ended. */

@@ -96,9 +96,9 @@ int serving_open(
 	s->scene_path = mem_strdup(s->asking->files.scene, e);
 	SCOPED char *cameras = file_join(s->asking->files.scene, "cameras.json", "", e);
 	return !s->scene_path || !cameras || scene_read_cameras_file(&s->cameras, cameras, e) ||
-			       serving_labels_open(s, e)
+			       serving_labels_open(s, e) || start(s, e)
 		       ? -1
-		       : start(s, e);
+		       : serving_labels_refresh(s, e);
 }
 
 void serving_close(struct serving *s)

@@ -145,6 +145,8 @@ int serving_preview(
 
 /* What labels need of the folder, once; serving_labels_close after it. */
 int serving_labels_open(struct serving *s, struct err *e);
+/* Lifts labels that are newer than the model of them, which another program wrote; with the thread. */
+int serving_labels_refresh(struct serving *s, struct err *e);
 /* Begins to look at all views, so that no click has to wait for that. */
 void serving_labels_look(struct serving *s);
 void serving_labels_close(struct serving *s);

@@ -173,6 +173,15 @@ refused() {
 		([.[2].things[] | select(.labelled).name] == ["'"$thing"'"])' said
 }
 
+@test "labels that another program wrote are lifted when it begins" {
+	cp -r nameless later
+	"$BIN/mask-pick" --regions run/regions.safetensors --weights weights --point view_001:48,36 --name pan -o later/labels.jsonl run/scene
+	echo '{"do": "ask", "question": "where is the pan?"}' | lines later | jq -e '.things[0].name == "pan"'
+	[ "$(ask later pan | cut -d: -f1)" = pan ]
+	run "$BIN/refer-serve" --labels - later
+	[ "$status" = 2 ] && [ "${lines[0]}" = "refer-serve: --labels must name a file" ]
+}
+
 @test "two servers of one folder lose no label" {
 	cp -r nameless two
 	for k in 1 2 3; do
