@@ -79,7 +79,7 @@ int refersplat_load(struct refersplat *r, const char *scene, const char *model, 
 	if (!scene || !model)
 		return end(r, err_set(&r->err, ERR_USAGE, "a scene and a model must be named"));
 	r->options = (struct asking_options){.run = scene,
-		.given = {(char *)scene, (char *)model, (char *)encoder},
+		.given = {.scene = (char *)scene, .model = (char *)model, .encoder = (char *)encoder},
 		.least = RESPONSES_LEAST};
 	const int bad = asking_open(&r->asking, &r->options, &r->err);
 	r->options = (struct asking_options){.least = RESPONSES_LEAST};

@@ -403,7 +403,14 @@ async function save() {
 // Things that have a name; those that were named here can be named anew, or forgotten.
 function chip(thing) {
 	const {name} = thing, e = make('span', {'data-name': name});
-	const change = async body => { await call('/v1/label', body); trouble(null); await refresh(); };
+	// No mask is asked for of a name that is about to go.
+	const change = async body => {
+		if (lit.names.includes(name)) clear_masks([], false);
+		await Promise.allSettled([...masks.values()]);
+		await call('/v1/label', body);
+		trouble(null);
+		await refresh();
+	};
 	const rename = () => {
 		const box = make('input', {value: name, 'aria-label': 'new name of ' + name, maxlength: 200});
 		box.addEventListener('keydown', k => {

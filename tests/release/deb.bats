@@ -37,7 +37,7 @@ field() { dpkg-deb -f "$deb" "$1"; }
 	done | grep -v '^ld-linux' | sort -u >needed
 	grep -q '^libcjson' needed
 	while read -r name; do
-		path=$(ldd "$usr/bin/refer-ask" "$usr/bin/gs-transform" "$usr"/lib/*/librefersplat.so | awk -v n="$name" '$1 == n { print $3; exit }')
+		path=$(ldd "$usr/bin/refer-ask" "$usr/bin/refer-serve" "$usr/bin/gs-transform" "$usr"/lib/*/librefersplat.so | awk -v n="$name" '$1 == n { print $3; exit }')
 		dpkg -S "$(realpath "$path")" 2>/dev/null || dpkg -S "$path" 2>/dev/null || dpkg -S "/usr$path"
 	done <needed | sed 's/:.*//' | sort -u >packages
 	[ "$(wc -l <packages)" -ge 8 ]
