@@ -117,7 +117,9 @@ static int show(const struct cli *c, const struct report *to, struct err *e)
 	const struct request_options *o = &options.request;
 	const enum locate_show how = check_run(c);
 	const struct asking_options ask = {.run = c->operands[0],
-		.given = {(char *)o->scene, (char *)o->model, (char *)options.encoder},
+		.given = {.scene = (char *)o->scene,
+			.model = (char *)o->model,
+			.encoder = (char *)options.encoder},
 		.viewpoint = o->viewpoint,
 		.least = o->least};
 	struct question q = {0};
