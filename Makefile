@@ -49,7 +49,7 @@ MAN_PAGES := $(wildcard man/*.[137])
 # What each step needs, as PROBE=PACKAGE: a header or a command, and the Debian package that has it.
 NEED_BUILD := png.h=libpng-dev wn.h=wordnet-dev jpeglib.h=libjpeg-dev cjson/cJSON.h=libcjson-dev zlib.h=zlib1g-dev libdeflate.h=libdeflate-dev \
 	utf8proc.h=libutf8proc-dev webp/decode.h=libwebp-dev zstd.h=libzstd-dev minizip/unzip.h=libminizip-dev microhttpd.h=libmicrohttpd-dev $(CC)=gcc ar=binutils
-NEED_TEST := bats=bats mandoc=mandoc jq=jq xxd=xxd zstd=zstd pkg-config=pkg-config f2py3=python3-numpy
+NEED_TEST := bats=bats curl=curl pkill=procps mandoc=mandoc jq=jq xxd=xxd zstd=zstd pkg-config=pkg-config f2py3=python3-numpy
 NEED_LINT := clang-format=clang-format clang-tidy=clang-tidy mandoc=mandoc
 
 # The language encoder, all-MiniLM-L6-v2 (Apache-2.0, 45 MB): fetched once into a cache that `make clean` leaves alone.
