@@ -153,6 +153,7 @@ static void put_value(const struct answer_told *t, const char *value, FILE *out)
 	fputc('\n', out);
 }
 
+/* "the mug or the cup? 19% and 18%" */
 static void put_choice(const struct answer_told *t, FILE *out)
 {
 	char **names = t->asking->model.lifted.names;

@@ -97,6 +97,8 @@ static int answer(struct serving *s, void *data, struct err *e)
 	if (!bad && *q->key)
 		serving_remember(s, q->key, q->to);
 	a->given = (struct cameras){0};
+	if (bad && e->code == ERR_USAGE) /* a place that is in no view */
+		e->code = ERR_FORMAT;
 	return bad;
 }
 

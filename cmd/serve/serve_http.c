@@ -163,13 +163,13 @@ static unsigned status_of(const struct err *e)
 static enum MHD_Result answer(const struct server *s, struct MHD_Connection *c, const char *what, int is_post,
 	const struct request *r)
 {
-	struct err e;
+	struct err e = {ERR_SYSTEM, "request: out of memory"};
 	struct serving_reply got = {0};
 	SCOPED_BY(json_release)
 	cJSON *body =
 		is_post ? json_parse(r->body ? r->body : "", r->length, "request", &e) : cJSON_CreateObject();
 
-	if (!is_post)
+	if (!is_post && body)
 		MHD_get_connection_values(c, MHD_GET_ARGUMENT_KIND, take_argument, body);
 	if (body && !cJSON_IsObject(body))
 		return refuse(c, MHD_HTTP_BAD_REQUEST, "request: not a JSON object");

@@ -223,13 +223,8 @@ static void move_talks(struct serving *s, const struct lifted *before, const str
 	for (struct serving_talk *t = s->talks; t < s->talks + SERVING_TALKS; t++) {
 		if (!t->used || t->talk.thing == ASKING_NONE)
 			continue;
-		const char *name = before->names[t->talk.thing];
-		size_t thing = 0;
-		while (thing < now->objects && strcmp(now->names[thing], name) != 0)
-			thing++;
-		if (thing < now->objects)
-			t->talk.thing = thing;
-		else
+		t->talk.thing = serving_thing(now, before->names[t->talk.thing]);
+		if (t->talk.thing == ASKING_NONE)
 			t->talk = (struct talk){.thing = ASKING_NONE};
 	}
 }

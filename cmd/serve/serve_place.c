@@ -8,6 +8,7 @@
 #include <math.h>
 
 enum { OUTLINE_POINTS = 20000, CLICKS = 1000 };
+#define OUTLINE_SCALE 0.5 /* of the view: no weights are finer */
 
 int serving_faulty(struct err *e, const char *key, const char *why)
 {
@@ -64,7 +65,6 @@ static int take_box(struct serving *s, const cJSON *box, struct serving_label *l
 	return pointing_choose_boxed(&s->pointing, l->view, at, e);
 }
 
-/* A mask as large as the view's weights would do, and is not worth knowing: half the view. */
 static int take_outline(struct serving *s, const cJSON *outline, struct serving_label *l, struct err *e)
 {
 	const cJSON *points = json_member(outline, "points"), *point;
@@ -77,8 +77,7 @@ static int take_outline(struct serving *s, const cJSON *outline, struct serving_
 	if (!cJSON_IsArray(points) || n < 3 || n > OUTLINE_POINTS)
 		return serving_faulty(e, "points", "is no list of 3 to 20000 [x,y]");
 	const struct camera *c = &s->cameras.views[l->view];
-	camera_scaled_size(c, .5, &height, &width);
-	camera_scaled_size(c, .5, &width, &height);
+	camera_scaled_size(c, OUTLINE_SCALE, &width, &height);
 	const size_t pixels = (size_t)height * (size_t)width;
 	SCOPED double *x = mem_alloc((size_t)n, 2 * sizeof *x, "outline", e);
 	SCOPED uint8_t *mask = mem_zalloc(pixels, 1, "outline", e),

@@ -149,10 +149,8 @@ static int find_thing(const struct lifted *l, const cJSON *name, size_t *thing, 
 {
 	if (!cJSON_IsString(name))
 		return err_set(e, ERR_FORMAT, "request: key 'thing' is no name and no list of names");
-	for (*thing = 0; *thing < l->objects; ++*thing)
-		if (!strcmp(l->names[*thing], name->valuestring))
-			return 0;
-	return err_set(e, ERR_CHECK, "no thing '%s'", name->valuestring);
+	*thing = serving_thing(l, name->valuestring);
+	return *thing == ASKING_NONE ? err_set(e, ERR_CHECK, "no thing '%s'", name->valuestring) : 0;
 }
 
 static int encode_mask(void *data, const struct answer *a, struct err *e)

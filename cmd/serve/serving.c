@@ -146,6 +146,14 @@ int serving_view(const struct serving *s, const cJSON *body, const char *key, si
 	return err_set(e, ERR_CHECK, "no view '%s'", name);
 }
 
+size_t serving_thing(const struct lifted *l, const char *name)
+{
+	for (size_t o = 0; o < l->objects; o++)
+		if (!strcmp(l->names[o], name))
+			return o;
+	return ASKING_NONE;
+}
+
 void serving_put_mask(struct jsontext *to, const char *view, const struct rle *mask)
 {
 	jsontext_open(to, NULL, '{');

@@ -111,6 +111,8 @@ int serving_text_end(struct serving_text *t, int bad, struct serving_reply *to, 
 
 /* The view of a member, or -1 with *e. */
 int serving_view(const struct serving *s, const cJSON *body, const char *key, size_t *view, struct err *e);
+/* The thing of that name; ASKING_NONE. */
+size_t serving_thing(const struct lifted *l, const char *name);
 /* {"view","height","width","counts"}: COCO's run lengths as a list. */
 void serving_put_mask(struct jsontext *to, const char *view, const struct rle *mask);
 

@@ -227,6 +227,8 @@ refused() {
 	refused 405 "GET is what this takes" -d '{}' "$ADDRESS/v1/things"
 	refused 400 "request: key 'points': 9999, 1 is outside of view 'view_001', which is 96x72" \
 		-d '{"points": [{"view": "view_001", "x": 9999, "y": 1}]}' "$ADDRESS/v1/label"
+	refused 400 "--point: 'view_001:9999.000000,1.000000' is outside of the view, which is 96x72" \
+		-d '{"view": "view_001", "x": 9999, "y": 1}' "$ADDRESS/v1/pick"
 	refused 400 "request: key 'direction' has no length" -d '{"origin": [0, 0, 0], "direction": [0, 0, 0]}' "$ADDRESS/v1/pick"
 	refused 404 "no 'x' here: ask, pick, label, things, splats, view and mask are what there is" "$ADDRESS/v1/x"
 }
