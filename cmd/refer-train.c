@@ -11,8 +11,8 @@ static struct learning_options options = {
 	.iterations = 45000, .checkpoint = 1000, .memory = 1024, .trainer = TRAINER_DEFAULTS};
 
 /* In the order of their choices. */
-static int interaction = REFER_PCMI, similarity = REFER_DOT, contrast = REFER_CONTRAST_COSINE,
-	   precision = PRECISION_U8;
+static int interaction = REFER_PCMI, similarity = REFER_DOT, query = REFER_WORDS,
+	   contrast = REFER_CONTRAST_COSINE, precision = PRECISION_U8;
 
 static const struct cli_option table[] = {
 	CLI_TEXT("scene", &options.from.scene, "SCENE", "scene folder of gs-import (required)"),
@@ -32,6 +32,8 @@ static const struct cli_option table[] = {
 		"how words act on Gaussians (default pcmi)"),
 	CLI_ONE_OF("similarity", &similarity, REFER_SIMILARITY_CHOICES,
 		"how features answer words (default dot)"),
+	CLI_ONE_OF("query", &query, REFER_QUERY_CHOICES,
+		"what stands for a sentence: its words, or its parse (default words)"),
 	CLI_ONE_OF(
 		"contrast", &contrast, REFER_CONTRAST_CHOICES, "contrast between sentences (default cosine)"),
 	{"feature-width", 0, CLI_INT, &options.trainer.feature_width, "N",
@@ -77,6 +79,7 @@ static void check_options(const struct cli *c)
 
 	o->interaction = (enum refer_interaction)interaction;
 	o->similarity = (enum refer_similarity)similarity;
+	o->query = (enum refer_query)query;
 	o->contrast = (enum refer_contrast)contrast;
 	o->seed = c->seed;
 	options.precision = (enum precision)precision;

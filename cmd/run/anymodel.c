@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/names.h"
+#include "cmd/text/text_query.h"
 #include "formats/scene/lifted.h"
 #include "formats/arrays/safetensors.h"
 #include "geom/up.h"
@@ -24,6 +25,8 @@ int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 			"%s: format is '%s', expected 'refer.model', 'refer.lifted' or 'refer.selection'",
 			st.path, format ? format : "");
 	if (m->is_selection ? selection_take(&m->selection, &st, e) : model_take(&m->trained, &st, e))
+		return -1;
+	if (m->trained.query == REFER_PARSES && parser_weights_default(&m->weights, e))
 		return -1;
 	m->origin = m->is_selection ? (struct origin){.scene = m->selection.scene} : m->trained.origin;
 	return 0;
@@ -109,13 +112,15 @@ struct box_record anymodel_box(const struct extent *x, const double offset[3], d
 static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, struct err *e)
 {
 	const char *model = file_name(q->model_path), *text = file_name(q->text_path);
-	const int width = m->is_lifted ? m->lifted.width : m->trained.layout.text_width;
+	const int width = m->is_lifted ? m->lifted.width : m->trained.layout.text_width,
+		  asked = !m->is_lifted && m->trained.query == REFER_PARSES ? query_width(q->text->width)
+									    : q->text->width;
 
 	if (anymodel_check_scene(m, model, q->scene, q->scene_path, e))
 		return -1;
-	if (!m->is_selection && width != q->text->width)
+	if (!m->is_selection && width != asked)
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d", model, width,
-			text, q->text->width);
+			text, asked);
 	if (fingerprint_check("encoder", text, &q->text->encoder, model, &m->origin.encoder, e))
 		return -1;
 	if (m->is_lifted && !q->text->pieces)
@@ -191,6 +196,7 @@ int anymodel_answer(
 		q->text->words, q->text->middle, q->text->texts, q->text->pieces, NULL, &parser, q->which,
 		q->count, q->text->refs, file_name(q->model_path), q->wants_parts};
 	SCOPED_BY(rows_free) struct rows rows = {0};
+	SCOPED_BY(query_free) struct query query = {0};
 
 	*a = (struct responses){0};
 	if (check_fit(m, q, e))
@@ -201,6 +207,12 @@ int anymodel_answer(
 		return answer_lifted(&m->lifted, q, &of, a, e);
 	if (model_rows(t, means, &rows, e))
 		return -1;
+	if (t->query == REFER_PARSES) {
+		if (text_query(q->text, q->text_path, &m->weights, &query, e))
+			return -1;
+		of.offsets = query.offsets;
+		of.words = query.words;
+	}
 	const struct respond_model respond = {
 		&t->layout, t->similarity, &rows, t->features, t->parameters, means, t->low, t->high};
 	return responses_trained(a, &respond, &of, q->wants_calibration, e);

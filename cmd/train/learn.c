@@ -144,7 +144,7 @@ static int learn_from(struct learning *l, const struct report *to, struct err *e
 	const struct learning_options *o = l->options;
 	struct training *d = &l->data;
 
-	if (training_read(d, &o->from, o->trainer.hold_out, o->trainer.seed, to, e))
+	if (training_read(d, &o->from, &o->trainer, to, e))
 		return -1;
 	if (d->left_out)
 		report_warn(to, "%s: %zu training sentences without words are left out", o->from.text,
@@ -155,8 +155,8 @@ static int learn_from(struct learning *l, const struct report *to, struct err *e
 		(o->checkpoint_path && file_out_probe(o->checkpoint_path, e)) || start(l, to, e) ||
 		resume(l, to, e) || trainlog_open(&l->log, o->log, l->trainer.state.iteration, e))
 		return -1;
-	if (take_steps(l, to, e) || training_write(d, &l->trainer, o->trainer.similarity, o->precision,
-					    o->output, l->of.identity, o->trainer.seed, e))
+	if (take_steps(l, to, e) || training_write(d, &l->trainer, &o->trainer, o->precision, o->output,
+					    l->of.identity, o->trainer.seed, e))
 		return -1;
 	if (l->is_own)
 		unlink(o->checkpoint_path);

@@ -23,21 +23,35 @@ static int number_objects(struct training *t, struct err *e)
 	return 0;
 }
 
+/* What stands for the text's sentences. */
+static int read_query(struct training *t, const char *path, enum refer_query query, struct err *e)
+{
+	SCOPED_BY(parser_weights_free) struct parser_weights weights = {0};
+
+	t->width = t->text.width;
+	if (query == REFER_WORDS)
+		return 0;
+	t->width = query_width(t->text.width);
+	return parser_weights_default(&weights, e) || text_query(&t->text, path, &weights, &t->query, e);
+}
+
 /* The training sentences of the text, packed. */
 static int pack_sentences(struct training *t, struct err *e)
 {
 	const struct text *text = &t->text;
-	const size_t width = (size_t)text->width;
+	const int64_t *offsets = t->query.words ? t->query.offsets : text->offsets;
+	const float *words = t->query.words ? t->query.words : text->words;
+	const size_t width = (size_t)t->width;
 
 	t->offsets = mem_zalloc(text->n + 1, sizeof *t->offsets, "sentences", e);
-	t->words = mem_alloc((size_t)text->offsets[text->n], width * sizeof(float), "words", e);
+	t->words = mem_alloc((size_t)offsets[text->n], width * sizeof(float), "words", e);
 	t->objects = mem_alloc(text->n, sizeof *t->objects, "sentences", e);
 	t->refs = mem_alloc(text->n, sizeof *t->refs, "sentences", e);
 	t->object_names = mem_alloc(text->n, sizeof *t->object_names, "sentences", e);
 	if (!t->offsets || !t->words || !t->objects || !t->refs || !t->object_names)
 		return -1;
 	for (size_t r = 0; r < text->n; r++) {
-		const int64_t from = text->offsets[r], count = text->offsets[r + 1] - from;
+		const int64_t from = offsets[r], count = offsets[r + 1] - from;
 		if (text->splits[r] != SPLIT_TRAIN)
 			continue;
 		if (!count) {
@@ -47,7 +61,7 @@ static int pack_sentences(struct training *t, struct err *e)
 		const size_t k = t->sentences++;
 		t->refs[k] = text->refs[r];
 		t->object_names[k] = text->objects[r];
-		memcpy(t->words + (size_t)t->offsets[k] * width, text->words + (size_t)from * width,
+		memcpy(t->words + (size_t)t->offsets[k] * width, words + (size_t)from * width,
 			sizeof(float) * (size_t)count * width);
 		t->offsets[k + 1] = t->offsets[k] + count;
 	}
@@ -65,7 +79,7 @@ static void make_checksum(struct training *t)
 
 	sum = add_checksum(sum, t->scene.splats.means, sizeof(float) * 3 * t->scene.splats.n);
 	sum = add_checksum(
-		sum, t->words, sizeof(float) * (size_t)t->offsets[t->sentences] * (size_t)t->text.width);
+		sum, t->words, sizeof(float) * (size_t)t->offsets[t->sentences] * (size_t)t->width);
 	sum = add_checksum(sum, t->offsets, sizeof *t->offsets * (t->sentences + 1));
 	sum = add_checksum(sum, t->objects, sizeof *t->objects * t->sentences);
 	for (size_t v = 0; v < t->views.n; v++) {
@@ -159,10 +173,10 @@ static int check_masks(
 }
 
 static int hold_out(
-	struct training *t, const struct training_files *from, double share, uint64_t seed, struct err *e)
+	struct training *t, const struct training_files *from, const struct trainer_options *o, struct err *e)
 {
-	if (share > 0 &&
-		held_out_choose(t->views.views, t->views.n, t->objects, t->sentences, share, seed, e))
+	if (o->hold_out > 0 && held_out_choose(t->views.views, t->views.n, t->objects, t->sentences,
+				       o->hold_out, (uint64_t)o->seed, e))
 		return e->code == ERR_FORMAT ? err_prefix(e, file_name(from->masks)) : -1;
 	for (size_t v = 0; v < t->views.n; v++) {
 		t->pairs += (size_t)t->views.views[v].count;
@@ -171,7 +185,7 @@ static int hold_out(
 	return 0;
 }
 
-static int read_all(struct training *t, const struct training_files *from, double share, uint64_t seed,
+static int read_all(struct training *t, const struct training_files *from, const struct trainer_options *o,
 	const struct report *to, struct err *e)
 {
 	size_t pairs = 0;
@@ -179,7 +193,8 @@ static int read_all(struct training *t, const struct training_files *from, doubl
 	if (scene_read(&t->scene, from->scene, e))
 		return -1;
 	splats_keep_means(&t->scene.splats);
-	if (text_read(&t->text, from->text, e) || pack_sentences(t, e))
+	if (text_read(&t->text, from->text, e) || read_query(t, from->text, o->query, e) ||
+		pack_sentences(t, e))
 		return -1;
 	if (!t->sentences)
 		return err_set(e, ERR_FORMAT, "%s: no training sentence with words", file_name(from->text));
@@ -194,17 +209,17 @@ static int read_all(struct training *t, const struct training_files *from, doubl
 		return err_set(e, ERR_FORMAT,
 			"%s: no mask of a training view is of a training sentence of %s",
 			file_name(from->masks), file_name(from->text));
-	if (check_masks(t, from, to, e) || read_lifted(t, from, e) || hold_out(t, from, share, seed, e))
+	if (check_masks(t, from, to, e) || read_lifted(t, from, e) || hold_out(t, from, o, e))
 		return -1;
 	make_checksum(t);
 	return 0;
 }
 
-int training_read(struct training *t, const struct training_files *from, double share, uint64_t seed,
+int training_read(struct training *t, const struct training_files *from, const struct trainer_options *o,
 	const struct report *to, struct err *e)
 {
 	*t = (struct training){0};
-	int bad = read_all(t, from, share, seed, to, e);
+	int bad = read_all(t, from, o, to, e);
 	if (bad)
 		training_free(t);
 	return bad;
@@ -215,7 +230,7 @@ struct trainer_source training_source(struct training *t, const struct row_views
 	return (struct trainer_source){.means = t->scene.splats.means,
 		.cameras = t->views.cameras,
 		.scene_gaussians = t->scene.splats.n,
-		.text_width = t->text.width,
+		.text_width = t->width,
 		.sentences = t->sentences,
 		.offsets = t->offsets,
 		.words = t->words,
@@ -244,13 +259,14 @@ struct checkpoint_of training_identity(
 	return of;
 }
 
-int training_write(const struct training *t, const struct trainer *learned, enum refer_similarity similarity,
+int training_write(const struct training *t, const struct trainer *learned, const struct trainer_options *o,
 	enum precision precision, const char *path, const char *options, long long seed, struct err *e)
 {
 	long iteration;
 	const float *values = trainer_result(learned, &iteration);
 	const struct model m = {.layout = learned->layout,
-		.similarity = similarity,
+		.similarity = o->similarity,
+		.query = o->query,
 		.precision = precision,
 		.origin = origin_of(t),
 		.scene_gaussians = t->scene.splats.n,
@@ -283,6 +299,7 @@ void training_free(struct training *t)
 	lifted_free(&t->lifted);
 	scene_free(&t->scene);
 	text_free(&t->text);
+	query_free(&t->query);
 	mem_free_all(t->offsets, t->words, t->objects, t->refs, t->object_names);
 	*t = (struct training){0};
 }

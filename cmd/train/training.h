@@ -5,6 +5,7 @@
 #include "base/err.h"
 #include "base/file.h"
 #include "base/report.h"
+#include "cmd/text/text_query.h"
 #include "formats/arrays/precision.h"
 #include "formats/records/trainlog.h"
 #include "formats/scene/checkpoint.h"
@@ -50,10 +51,12 @@ struct view_source training_views_source(struct training_views *t);
 struct training {
 	struct scene scene;
 	struct text text;
+	struct query query;		   /* what stands for its sentences, where they are not its words */
 	size_t sentences;		   /* R training sentences with words, packed from text */
 	size_t left_out;		   /* training sentences without words */
 	int64_t *offsets;		   /* (R+1) */
-	float *words;			   /* (offsets[R], text.width) */
+	int width;			   /* of a word */
+	float *words;			   /* (offsets[R], width) */
 	int *objects;			   /* (R) numbers of the objects */
 	const char **refs, **object_names; /* (R) owned by text */
 	struct training_views views;	   /* training views that have masks */
@@ -71,7 +74,8 @@ struct training_files {
 	const char *lifted; /* NULL: no warm start */
 };
 
-int training_read(struct training *t, const struct training_files *from, double hold_out, uint64_t seed,
+/* Of the options: what is held out, the seed, and what stands for a sentence. */
+int training_read(struct training *t, const struct training_files *from, const struct trainer_options *o,
 	const struct report *to, struct err *e);
 /* What a checkpoint of it is of. */
 struct checkpoint_of training_identity(
@@ -81,7 +85,7 @@ struct trainer_source training_source(struct training *t, const struct row_views
 void training_free(struct training *t);
 
 /* Writes the model that was learned. *options: how, but for the number of steps and the precision. */
-int training_write(const struct training *t, const struct trainer *learned, enum refer_similarity similarity,
+int training_write(const struct training *t, const struct trainer *learned, const struct trainer_options *o,
 	enum precision precision, const char *path, const char *options, long long seed, struct err *e);
 
 /* The masks that a training learns from, and with them its views. formats/scene/training.md. */

@@ -19,13 +19,13 @@ void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_op
 		tolerance[NUMBER_SIZE], share[NUMBER_SIZE], hold_out[NUMBER_SIZE];
 
 	snprintf(text, CHECKPOINT_IDENTITY,
-		"--interaction %s --similarity %s --contrast %s --feature-width %lld --temperature %s --lambda %s --feature-rate %s --mlp-rate %s "
+		"--interaction %s --similarity %s --query %s --contrast %s --feature-width %lld --temperature %s --lambda %s --feature-rate %s --mlp-rate %s "
 		"--batch %lld --negatives %lld --tolerance %s --share %s --init-iterations %lld --hold-out %s --seed %lld, inputs %08x",
 		refer_interaction_name(o->interaction), refer_similarity_name(o->similarity),
-		refer_contrast_name(o->contrast), o->feature_width, number_text(temperature, o->temperature),
-		number_text(lambda, o->lambda), number_text(features, o->rates.features),
-		number_text(mlps, o->rates.mlps), o->batch, o->negatives,
-		number_text(tolerance, o->tolerance), number_text(share, o->share), o->warm,
+		refer_query_name(o->query), refer_contrast_name(o->contrast), o->feature_width,
+		number_text(temperature, o->temperature), number_text(lambda, o->lambda),
+		number_text(features, o->rates.features), number_text(mlps, o->rates.mlps), o->batch,
+		o->negatives, number_text(tolerance, o->tolerance), number_text(share, o->share), o->warm,
 		number_text(hold_out, o->hold_out), o->seed, (unsigned)inputs);
 }
 

@@ -13,6 +13,7 @@
 struct model {
 	struct refer_layout layout;
 	enum refer_similarity similarity;
+	enum refer_query query;
 	enum precision precision; /* of features and weights in the file; here they are float32 */
 	size_t scene_gaussians;	  /* N of the scene that it belongs to */
 	size_t n;		  /* M rows of features */

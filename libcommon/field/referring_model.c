@@ -6,6 +6,7 @@
 static const char *const interactions[REFER_INTERACTIONS] = {
 	"none", "attention", "attention+fp", "add", "pcmi", "pcmi-proj"};
 static const char *const similarities[2] = {"dot", "cosine"};
+static const char *const queries[2] = {"words", "parses"};
 static const char *const contrasts[3] = {"none", "dot", "cosine"};
 
 const char *refer_interaction_name(enum refer_interaction i)
@@ -30,6 +31,19 @@ int refer_similarity_parse(const char *name)
 {
 	for (int i = 0; i < 2; i++)
 		if (!strcmp(name, similarities[i]))
+			return i;
+	return -1;
+}
+
+const char *refer_query_name(enum refer_query q)
+{
+	return queries[q];
+}
+
+int refer_query_parse(const char *name)
+{
+	for (int i = 0; i < 2; i++)
+		if (!strcmp(name, queries[i]))
 			return i;
 	return -1;
 }

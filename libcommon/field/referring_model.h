@@ -48,7 +48,7 @@ enum {
 	REFER_T2 = 256,
 };
 
-/* In the order of the choices of --interaction, --similarity and --contrast. */
+/* In the order of the choices of --interaction, --similarity, --query and --contrast. */
 enum refer_interaction {
 	REFER_NONE,
 	REFER_ATTENTION,
@@ -59,10 +59,13 @@ enum refer_interaction {
 	REFER_INTERACTIONS
 };
 enum refer_similarity { REFER_DOT, REFER_COSINE };
+/* What stands for a sentence: the words of the encoder, as in the paper, or of its parse (field/query.h). */
+enum refer_query { REFER_WORDS, REFER_PARSES };
 enum refer_contrast { REFER_CONTRAST_NONE, REFER_CONTRAST_DOT, REFER_CONTRAST_COSINE };
 
 #define REFER_INTERACTION_CHOICES "none|attention|attention+fp|add|pcmi|pcmi-proj"
 #define REFER_SIMILARITY_CHOICES "dot|cosine"
+#define REFER_QUERY_CHOICES "words|parses"
 #define REFER_CONTRAST_CHOICES "none|dot|cosine"
 
 /* The name of an interaction / similarity / contrast, and back (-1: unknown). */
@@ -70,6 +73,8 @@ const char *refer_interaction_name(enum refer_interaction i);
 int refer_interaction_parse(const char *name);
 const char *refer_similarity_name(enum refer_similarity s);
 int refer_similarity_parse(const char *name);
+const char *refer_query_name(enum refer_query q);
+int refer_query_parse(const char *name);
 const char *refer_contrast_name(enum refer_contrast c);
 
 /* One learned array of the slab. */

@@ -172,10 +172,11 @@ static int step_of_views(struct trainer *t, struct step_losses *losses, struct e
 
 int trainer_step(struct trainer *t, struct step_losses *losses, struct err *e)
 {
-	const struct train_rates rates = {t->rates.features, WARM_START_MLP_RATE * t->rates.mlps};
-
 	if (t->state.iteration >= t->warm_steps)
 		return step_of_views(t, losses, e);
+	const double left = 1 - (double)t->state.iteration / (double)t->warm_steps;
+	const struct train_rates rates = {
+		left * t->rates.features, left * WARM_START_MLP_RATE * t->rates.mlps};
 	*losses = train_step(&t->state, t->step, &t->warm.order, &rates, &t->warm.view.weights);
 	return 0;
 }

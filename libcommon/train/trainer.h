@@ -15,6 +15,7 @@ struct trainer_options {
 	enum refer_interaction interaction;
 	enum refer_similarity similarity;
 	enum refer_contrast contrast;
+	enum refer_query query;	    /* what the source's words are */
 	long long feature_width;    /* d_r, 1 to REFER_MAX_X */
 	double temperature, lambda; /* of the contrast */
 	double tolerance;	    /* train_active_set's */

@@ -33,7 +33,7 @@ struct warm_start {
 };
 
 enum {
-	WARM_START_BATCH = 4,	  /* sentences in a step */
+	WARM_START_BATCH = 16,	  /* sentences in a step */
 	WARM_START_MLP_RATE = 10, /* times the usual rate of the networks: what they fit is free of noise */
 };
 

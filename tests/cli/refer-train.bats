@@ -10,7 +10,7 @@ load refer-train
 	[ "$(ls | tr '\n' ' ')" = "masks.jsonl out.safetensors printed scene text.safetensors weights " ]
 	"$BIN/gs-check" out.safetensors
 	[ "$(meta out.safetensors gaussians)" = 1000 ]
-	[[ "$(meta out.safetensors options)" == "--iterations 8 --precision u8 --interaction pcmi --similarity dot --contrast cosine --feature-width 16 \
+	[[ "$(meta out.safetensors options)" == "--iterations 8 --precision u8 --interaction pcmi --similarity dot --query words --contrast cosine --feature-width 16 \
 --temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --negatives 12 --tolerance 0 --share 0.04 --init-iterations 0 --hold-out 0 --seed 1, inputs "???????? ]]
 }
 
@@ -104,6 +104,23 @@ load refer-train
 		"$BIN/gs-check" m.$way
 	done
 	not cmp -s m.none m.dot
+}
+
+@test "--query parses: the same bytes for any number of threads, a model that is asked by parses, and no other text" {
+	for n in 1 2 3; do train --threads $n --query parses --batch 2 -o m$n; done
+	cmp m1 m2
+	cmp m1 m3
+	[ "$(meta m1 query)" = parses ]
+	"$BIN/gs-check" m1
+	"$BIN/refer-render" --scene scene --text text.safetensors --model m1 --threads 1 -o one
+	"$BIN/refer-render" --scene scene --text text.safetensors --model m1 --threads 3 -o three
+	cmp one three
+	[ "$(wc -l <one)" -gt 0 ]
+	# Without word pieces there is nothing to parse by.
+	LC_ALL=C sed 's/"pieces"/"pieceX"/' text.safetensors >foreign
+	refuses 3 "foreign: no word pieces, which parses need: encode its sentences again" --query parses --text foreign
+	says 3 "refer-render: foreign: no word pieces, which parses need: encode its sentences again" \
+		"$BIN/refer-render" --scene scene --text foreign --model m1
 }
 
 @test "a killed training goes on to the same model and log" {
