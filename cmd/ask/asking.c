@@ -110,8 +110,8 @@ int asking_open(struct asking *a, const struct asking_options *options, struct e
 {
 	a->options = options;
 	return read_all(a, e) || (options->camera && asking_read_camera(a, options->camera, e)) ||
-			       find_viewpoint(a, e) || make_chooser(a, e) ||
-			       anymodel_place(&a->model, &a->scene, e)
+			       find_viewpoint(a, e) || anymodel_place(&a->model, &a->scene, e) ||
+			       make_chooser(a, e)
 		       ? -1
 		       : 0;
 }

@@ -34,9 +34,7 @@ int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 
 void anymodel_free(struct anymodel *m)
 {
-	for (size_t o = 0; m->extents && o < m->lifted.objects; o++)
-		extent_free(&m->extents[o]);
-	free(m->extents);
+	lifted_extents_free(m->extents, m->lifted.objects);
 	model_free(&m->trained);
 	lifted_free(&m->lifted);
 	selection_free(&m->selection);
@@ -57,40 +55,17 @@ int anymodel_check_scene(const struct anymodel *m, const char *model, const stru
 	return fingerprint_check("scene", model, &m->origin.scene, scene_path, &scene->fingerprint, e);
 }
 
-static int find_one(
-	struct extent *to, const struct lifted *l, size_t object, const struct splats *s, const double up[3])
-{
-	const size_t first = (size_t)l->indptr[object], n = (size_t)l->indptr[object + 1] - first;
-	struct err ignored;
-	SCOPED int32_t *ids = mem_alloc(n, sizeof *ids, "object", &ignored);
-	SCOPED float *responses = mem_alloc(n, sizeof *responses, "object", &ignored);
-	size_t count = 0;
-
-	for (size_t i = 0; i < n && ids && responses; i++) {
-		const float response = l->share[first + i] - lifted_cut_of(l, object);
-		if (!(response > 0))
-			continue;
-		ids[count] = l->index[first + i];
-		responses[count++] = response;
-	}
-	return !ids || !responses || extent_find(to, s, ids, responses, count, up, &ignored);
-}
-
 int anymodel_place(struct anymodel *m, const struct scene *scene, struct err *e)
 {
-	const size_t n = m->lifted.objects;
 	double up[3];
-	int bad = 0;
 
 	if (m->extents || !m->is_lifted)
 		return 0;
-	if (!(m->extents = mem_zalloc(n, sizeof *m->extents, "objects", e)))
-		return -1;
 	cameras_up(&scene->cameras, up);
-#pragma omp parallel for schedule(dynamic) reduction(| : bad)
-	for (size_t o = 0; o < n; o++)
-		bad |= find_one(&m->extents[o], &m->lifted, o, &scene->splats, up) != 0;
-	return bad ? err_set(e, ERR_SYSTEM, "objects: out of memory") : 0;
+	if (lifted_extents(&m->extents, &m->lifted, &scene->splats, up, e))
+		return -1;
+	m->lifted.extents = m->extents;
+	return 0;
 }
 
 static void move(struct box *b, const double by[3])

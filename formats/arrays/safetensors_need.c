@@ -119,11 +119,7 @@ int safetensors_to_float(const struct st_tensor *t, float *out, size_t count, st
 		return 0;
 	}
 	if (t->dtype == ST_F16) {
-		for (size_t i = 0; i < count; i++) {
-			uint16_t half;
-			memcpy(&half, p + 2 * i, 2);
-			out[i] = half_to_float(half);
-		}
+		half_to_floats(p, count, out);
 		return 0;
 	}
 	if (t->dtype != ST_F64 && t->dtype != ST_BF16)

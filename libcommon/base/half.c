@@ -3,9 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+enum { BLOCK = 1 << 16 }; /* numbers that one thread takes at a time */
+
 /* The exponent of a half is 112 less than a float's; the product is exact, also for subnormal halves.
  * Infinities and NaN get the float's largest exponent. */
-float half_to_float(uint16_t h)
+static inline float to_float(uint16_t h)
 {
 	uint32_t bits = (uint32_t)(h & 0x7fff) << 13;
 	float f;
@@ -17,6 +19,33 @@ float half_to_float(uint16_t h)
 	bits |= (uint32_t)(h & 0x8000) << 16;
 	memcpy(&f, &bits, 4);
 	return f;
+}
+
+float half_to_float(uint16_t h)
+{
+	return to_float(h);
+}
+
+#if defined(__x86_64__) && defined(__GLIBC__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+static void
+block_to_floats(const unsigned char *p, size_t n, float *out)
+{
+	for (size_t i = 0; i < n; i++) {
+		uint16_t h;
+		memcpy(&h, p + 2 * i, sizeof h);
+		out[i] = to_float(h);
+	}
+}
+
+void half_to_floats(const void *halves, size_t n, float *out)
+{
+	const unsigned char *p = halves;
+
+#pragma omp parallel for schedule(static) if (n > BLOCK)
+	for (size_t i = 0; i < n; i += BLOCK)
+		block_to_floats(p + 2 * i, n - i < BLOCK ? n - i : BLOCK, out + i);
 }
 
 uint16_t half_of_float(float f)

@@ -3,6 +3,7 @@
 #include "base/file.h"
 
 #include <stdint.h>
+#include <stdio_ext.h>
 #include <sys/stat.h>
 
 void mapped_stream_take(FILE **stream, char buffer[MAPPED_STREAM_BUFFER])
@@ -19,6 +20,7 @@ void mapped_stream_take(FILE **stream, char buffer[MAPPED_STREAM_BUFFER])
 		file_unmap(&map);
 		return;
 	}
+	__fsetlocking(mapped, FSETLOCKING_BYCALLER); /* one thread reads it, a character at a time */
 	setvbuf(mapped, buffer, _IOFBF, MAPPED_STREAM_BUFFER);
 	fclose(*stream);
 	*stream = mapped;

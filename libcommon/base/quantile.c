@@ -1,6 +1,10 @@
 #include "base/quantile.h"
 
 #include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+enum { DIGIT_BITS = 11, DIGITS = 1 << DIGIT_BITS };
 
 double quantile_sorted(const double *sorted, size_t n, double share)
 {
@@ -10,6 +14,42 @@ double quantile_sorted(const double *sorted, size_t n, double share)
 	if (below + 1 >= n || sorted[below] == sorted[below + 1])
 		return sorted[below];
 	return sorted[below] + (place - (double)below) * (sorted[below + 1] - sorted[below]);
+}
+
+/* Rises with the number, -0 below 0. */
+static uint64_t key_of(double at)
+{
+	uint64_t bits;
+
+	memcpy(&bits, &at, sizeof bits);
+	return bits ^ (bits >> 63 ? UINT64_MAX : (uint64_t)1 << 63);
+}
+
+/* A radix sort of DIGIT_BITS at a time from the least ones on; what all have alike is passed over. */
+void quantile_order(struct quantile_item *items, struct quantile_item *other, size_t n)
+{
+	struct quantile_item *from = items, *to = other;
+	size_t count[DIGITS + 1];
+	uint64_t differ = 0;
+
+	for (size_t i = 0; i < n; i++)
+		differ |= key_of(items[i].at) ^ key_of(items[0].at);
+	for (int shift = 0; shift < 64; shift += DIGIT_BITS) {
+		if (!(differ >> shift & (DIGITS - 1)))
+			continue;
+		memset(count, 0, sizeof count);
+		for (size_t i = 0; i < n; i++)
+			count[1 + (key_of(from[i].at) >> shift & (DIGITS - 1))]++;
+		for (int d = 0; d < DIGITS; d++)
+			count[d + 1] += count[d];
+		for (size_t i = 0; i < n; i++)
+			to[count[key_of(from[i].at) >> shift & (DIGITS - 1)]++] = from[i];
+		struct quantile_item *const was = from;
+		from = to;
+		to = was;
+	}
+	if (from != items)
+		memcpy(items, from, n * sizeof *items);
 }
 
 static double middle_of(double a, double b, double c)

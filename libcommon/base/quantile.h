@@ -11,5 +11,8 @@ struct quantile_item {
 	double at, weight;
 };
 
+/* Puts items in rising order, those that are equal as they were; none is NaN. other (n) is scratch. */
+void quantile_order(struct quantile_item *items, struct quantile_item *other, size_t n);
+
 /* Of n > 0 items in any order: where `share` of their weight is passed. They change places. */
 double quantile_weighted(struct quantile_item *items, size_t n, double share);

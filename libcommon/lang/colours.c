@@ -63,22 +63,32 @@ void colour_lab(const double rgb[3], double lab[3])
 
 static const double told_apart = 16, one_colour = 16;
 
-static double square_distance(const double lab[3], int word)
+static void lab_of_word(int word, double lab[3])
 {
 	const unsigned char *c = colours[word].rgb;
-	double other[3];
 
-	colour_lab((double[3]){c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}, other);
+	colour_lab((double[3]){c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}, lab);
+}
+
+static double square_distance(const double lab[3], const double other[3])
+{
 	const double l = 0.5 * (lab[0] - other[0]), a = lab[1] - other[1], b = lab[2] - other[2];
+
 	return l * l + a * a + b * b;
 }
 
-void colour_call(const double lab[3], double weight, double *share)
+void colour_labs_make(struct colour_labs *all)
+{
+	for (int w = 0; w < COLOUR_WORDS; w++)
+		lab_of_word(w, all->of[w]);
+}
+
+void colour_call(const struct colour_labs *all, const double lab[3], double weight, double *share)
 {
 	double square[COLOUR_WORDS], least = INFINITY;
 
 	for (int w = 0; w < COLOUR_WORDS; w++) {
-		square[w] = square_distance(lab, w);
+		square[w] = square_distance(lab, all->of[w]);
 		least = fmin(least, square[w]);
 	}
 	for (int w = 0; w < COLOUR_WORDS; w++)
@@ -87,9 +97,9 @@ void colour_call(const double lab[3], double weight, double *share)
 
 double colour_words_alike(int a, int b)
 {
-	const unsigned char *c = colours[a].rgb;
-	double lab[3];
+	double lab[3], other[3];
 
-	colour_lab((double[3]){c[0] / 255.0, c[1] / 255.0, c[2] / 255.0}, lab);
-	return exp(-0.5 * square_distance(lab, b) / (one_colour * one_colour));
+	lab_of_word(a, lab);
+	lab_of_word(b, other);
+	return exp(-0.5 * square_distance(lab, other) / (one_colour * one_colour));
 }

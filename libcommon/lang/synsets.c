@@ -38,22 +38,27 @@ void synsets_counts(const char *lemma, int pos, int *counts, int n)
 		free_index(index);
 }
 
-SynsetPtr synsets_read(int pos, long synset)
+/* Words are kinds of the same few things: the last synset of each place is kept. */
+int synsets_up(long synset, long up[SYNSETS_UP])
 {
 	static char none[] = "";
+	static struct {
+		long synset, up[SYNSETS_UP]; /* 0: none yet */
+		int n;
+	} kept[2048], *k;
 
-	return read_synset(pos, synset, none);
-}
-
-int synsets_next_up(const Synset *s, int pos, int *at, long *up)
-{
-	while (*at < s->ptrcount) {
-		const int i = (*at)++;
-		if (s->ptrtyp[i] == HYPERPTR && s->ppos[i] == pos) {
-			*up = s->ptroff[i];
-			return 1;
-		}
+	k = &kept[synset % (long)(sizeof kept / sizeof *kept)];
+	if (k->synset != synset) {
+		SynsetPtr s = read_synset(NOUN, synset, none);
+		k->synset = synset;
+		k->n = 0;
+		for (int i = 0; s && i < s->ptrcount && k->n < SYNSETS_UP; i++)
+			if (s->ptrtyp[i] == HYPERPTR && s->ppos[i] == NOUN)
+				k->up[k->n++] = s->ptroff[i];
+		if (s)
+			free_synset(s);
 	}
-	return 0;
+	memcpy(up, k->up, sizeof k->up);
+	return k->n;
 }
 #endif

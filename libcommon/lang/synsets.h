@@ -12,9 +12,8 @@ int synsets_of(const char *lemma, int pos, long *synsets, int most);
 /* counts (n): how often each of the first n synsets was meant in the texts that were tagged. */
 void synsets_counts(const char *lemma, int pos, int *counts, int n);
 
-/* One synset, NULL where it cannot be read; free_synset it. */
-SynsetPtr synsets_read(int pos, long synset);
+enum { SYNSETS_UP = 8 }; /* WordNet 3.0 has 5 at most */
 
-/* Steps through what a synset is a kind of, *at being 0 before the first: 1 and *up, or 0 at the end. */
-int synsets_next_up(const Synset *s, int pos, int *at, long *up);
+/* What a noun's synset is a kind of; how many. */
+int synsets_up(long synset, long up[SYNSETS_UP]);
 #endif

@@ -46,19 +46,16 @@ int wordnet_is_there(void)
 /* Adds a synset and what it is a kind of. */
 static void climb(struct wordnet_noun *to, long synset, int depth, int sense)
 {
-	int at = 0;
-	long up;
+	long up[SYNSETS_UP];
 
 	if (to->n == WORDNET_UP || depth > DEEPEST)
 		return;
 	to->up[to->n].synset = synset;
 	to->up[to->n].depth = (short)depth;
 	to->up[to->n++].sense = (short)sense;
-	SynsetPtr s = synsets_read(NOUN, synset);
-	while (s && synsets_next_up(s, NOUN, &at, &up))
-		climb(to, up, depth + 1, sense);
-	if (s)
-		free_synset(s);
+	const int n = synsets_up(synset, up);
+	for (int i = 0; i < n; i++)
+		climb(to, up[i], depth + 1, sense);
 }
 
 /* Whether a sense of a noun is a kind of a synset. */

@@ -21,23 +21,16 @@ struct cloud {
 	double *means;	/* (n,3) */
 	double *spread; /* (n,3,3) rows: the Gaussian's axes, as long as its standard deviations */
 	double *weight;
-	struct quantile_item *items;
+	struct quantile_item *items; /* (3 n) */
 };
 
-static int by_place(const void *a, const void *b)
-{
-	const struct quantile_item *x = a, *y = b;
-
-	return (x->at > y->at) - (x->at < y->at);
-}
-
 /* Where a box begins whose far end is at the other tail. */
-static double dense_end(struct quantile_item *items, size_t n)
+static double dense_end(struct quantile_item *items, struct quantile_item *other, size_t n)
 {
 	double total = 0, out = 0, beyond = 0, most = -INFINITY, end = 0;
 	size_t far = n;
 
-	qsort(items, n, sizeof *items, by_place);
+	quantile_order(items, other, n);
 	for (size_t i = 0; i < n; i++)
 		total += items[i].weight;
 	while (far && beyond <= EXTENT_TAIL * total)
@@ -55,10 +48,12 @@ static double dense_end(struct quantile_item *items, size_t n)
 	return end;
 }
 
-/* One end of the cloud in direction d, of every `step`th Gaussian: where it gets thin, or, at once, the
+/* Both ends of the cloud in direction d, of every `step`th Gaussian: where it gets thin, or, at once, the
  * greatest that is not trimmed. */
-static double reach(const struct cloud *c, size_t step, const double d[3], int is_quick)
+static void reach(
+	const struct cloud *c, size_t step, const double d[3], int is_quick, double *low, double *high)
 {
+	struct quantile_item *up = c->items, *down = up + c->n, *other = down + c->n;
 	size_t n = 0;
 
 	for (size_t i = 0; i < c->n; i += step) {
@@ -68,10 +63,13 @@ static double reach(const struct cloud *c, size_t step, const double d[3], int i
 			double along = s[3 * k] * d[0] + s[3 * k + 1] * d[1] + s[3 * k + 2] * d[2];
 			variance += along * along;
 		}
-		const double at = m[0] * d[0] + m[1] * d[1] + m[2] * d[2] + EXTENT_SIGMAS * sqrt(variance);
-		c->items[n++] = (struct quantile_item){-at, c->weight[i]};
+		const double middle = m[0] * d[0] + m[1] * d[1] + m[2] * d[2],
+			     long_as = EXTENT_SIGMAS * sqrt(variance);
+		up[n] = (struct quantile_item){-(middle + long_as), c->weight[i]};
+		down[n++] = (struct quantile_item){-(-middle + long_as), c->weight[i]};
 	}
-	return -(is_quick ? quantile_weighted(c->items, n, EXTENT_TRIM) : dense_end(c->items, n));
+	*high = -(is_quick ? quantile_weighted(up, n, EXTENT_TRIM) : dense_end(up, other, n));
+	*low = is_quick ? quantile_weighted(down, n, EXTENT_TRIM) : dense_end(down, other, n);
 }
 
 /* The box along these axes; to compare its foot alone, along the first two, of every `step`th Gaussian. */
@@ -81,8 +79,8 @@ static struct box box_along(const struct cloud *c, size_t step, const double axe
 
 	memcpy(b.axes, axes, sizeof b.axes);
 	for (int k = 0; k < (is_foot ? 2 : 3); k++) {
-		const double back[3] = {-axes[k][0], -axes[k][1], -axes[k][2]};
-		const double high = reach(c, step, axes[k], is_foot), low = -reach(c, step, back, is_foot);
+		double low, high;
+		reach(c, step, axes[k], is_foot, &low, &high);
 		b.half[k] = fmax(high - low, 0) / 2;
 		for (int d = 0; d < 3; d++)
 			b.centre[d] += (high + low) / 2 * axes[k][d];
@@ -299,7 +297,7 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 	struct cloud c = {n, mem_alloc(room, 3 * sizeof(double), "object", e),
 		mem_alloc(room, 9 * sizeof(double), "object", e),
 		mem_alloc(room, sizeof(double), "object", e),
-		mem_alloc(room, sizeof(struct quantile_item), "object", e)};
+		mem_alloc(room, 3 * sizeof(struct quantile_item), "object", e)};
 	SCOPED char *kept = mem_alloc(room, 1, "object", e);
 
 	*x = (struct extent){.ids = mem_alloc(room, sizeof *ids, "object", e), .weight = c.weight};
@@ -319,6 +317,14 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 	if (bad)
 		extent_free(x);
 	return bad;
+}
+
+double extent_part(const struct splats *s, size_t gaussian)
+{
+	const float *r = s->scales + 3 * gaussian;
+	const double area = (double)r[0] * r[1] + (double)r[1] * r[2] + (double)r[2] * r[0];
+
+	return isfinite(area) ? area * s->opacities[gaussian] : 0;
 }
 
 void extent_free(struct extent *x)

@@ -38,3 +38,6 @@ struct extent {
 int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, const float *responses,
 	size_t n, const double up[3], struct err *e);
 void extent_free(struct extent *x);
+
+/* How much of an object a Gaussian makes up: what it covers, seen from anywhere. */
+double extent_part(const struct splats *s, size_t gaussian);

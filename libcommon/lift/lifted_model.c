@@ -3,6 +3,8 @@
 #include "base/mem.h"
 #include "base/names.h"
 
+#include <stdlib.h>
+
 void lifted_free(struct lifted *l)
 {
 	mem_free_strings(l->names, l->objects);
@@ -37,6 +39,50 @@ void lifted_responses(const struct lifted *l, size_t object, float *responses)
 		responses[i] = -cut;
 	for (int64_t k = l->indptr[object]; k < l->indptr[object + 1]; k++)
 		responses[l->index[k]] = l->share[k] - cut;
+}
+
+static int find_extent(struct extent *to, const struct lifted *l, size_t object, const struct splats *s,
+	const double up[3], struct err *e)
+{
+	const size_t first = (size_t)l->indptr[object], n = (size_t)l->indptr[object + 1] - first;
+	SCOPED int32_t *ids = mem_alloc(n, sizeof *ids, "object", e);
+	SCOPED float *responses = mem_alloc(n, sizeof *responses, "object", e);
+	size_t count = 0;
+
+	for (size_t i = 0; i < n && ids && responses; i++) {
+		const float response = l->share[first + i] - lifted_cut_of(l, object);
+		if (!(response > 0) || !(extent_part(s, (size_t)l->index[first + i]) > 0))
+			continue;
+		ids[count] = l->index[first + i];
+		responses[count++] = response;
+	}
+	return !ids || !responses || extent_find(to, s, ids, responses, count, up, e);
+}
+
+int lifted_extents(struct extent **extents, const struct lifted *l, const struct splats *s,
+	const double up[3], struct err *e)
+{
+	struct extent *all = mem_zalloc(l->objects, sizeof *all, "objects", e);
+	int bad = !all;
+
+#pragma omp parallel for schedule(dynamic) reduction(| : bad)
+	for (size_t o = 0; o < (all ? l->objects : 0); o++) {
+		struct err ignored;
+		bad |= find_extent(&all[o], l, o, s, up, &ignored) != 0;
+	}
+	*extents = all;
+	if (!bad)
+		return 0;
+	lifted_extents_free(all, l->objects);
+	*extents = NULL;
+	return err_set(e, ERR_SYSTEM, "objects: out of memory");
+}
+
+void lifted_extents_free(struct extent *extents, size_t objects)
+{
+	for (size_t o = 0; extents && o < objects; o++)
+		extent_free(&extents[o]);
+	free(extents);
 }
 
 /* Room for all of both; counts are still 0. */

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "base/err.h"
+#include "lift/extent.h"
 
 #include <stdint.h>
 
@@ -30,6 +31,8 @@ struct lifted {
 	float *middle;	  /* the same of the encoder's middle layer, which sentences are taken apart by; NULL:
 			     none */
 	float *cut;	  /* (O) in (0,1): see lifted_cut_of; NULL: LIFTED_CUT of all */
+
+	const struct extent *extents; /* (O) somebody else's, of lifted_extents; NULL: not known */
 };
 
 /* All arrays are the struct's own; a zeroed one may be freed. */
@@ -56,3 +59,10 @@ float lifted_cut_of(const struct lifted *l, size_t object);
 
 /* responses (N) = a_i - lifted_cut_of, with the share a_i of each Gaussian in the object. */
 void lifted_responses(const struct lifted *l, size_t object, float *responses);
+
+/* Where each object is: (O) extents of the Gaussians with responses above 0 that can be seen, in the frame of
+ * the splats. Returns 0, or -1 with *e set. */
+int lifted_extents(struct extent **extents, const struct lifted *l, const struct splats *s,
+	const double up[3], struct err *e);
+/* Of O, or NULL. */
+void lifted_extents_free(struct extent *extents, size_t objects);

@@ -51,15 +51,6 @@ int arrangement_where(const struct arrangement *a, size_t object, double at[3])
 	return weight > 0;
 }
 
-/* How much of the object a Gaussian makes up: what it covers, seen from anywhere. */
-static double size_of(const struct splats *s, size_t g)
-{
-	const float *r = s->scales + 3 * g;
-	double area = (double)r[0] * r[1] + (double)r[1] * r[2] + (double)r[2] * r[0];
-
-	return isfinite(area) ? area * s->opacities[g] : 0;
-}
-
 static int by_weight(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
@@ -74,28 +65,6 @@ static void level_weights(double *weight, double *sorted, size_t n)
 	qsort(sorted, n, sizeof *sorted, by_weight);
 	for (size_t i = 0; i < n; i++)
 		weight[i] = fmin(weight[i], most_weight * sorted[n / 2]);
-}
-
-/* The Gaussians that are mostly the object's and hang together: ids (n) of *x. */
-static int find_own(struct extent *x, const struct lifted *l, size_t object, const struct splats *s,
-	const double up[3], struct err *e)
-{
-	const size_t begin = (size_t)l->indptr[object], room = (size_t)l->indptr[object + 1] - begin;
-	int32_t *ids = mem_alloc(room, sizeof *ids, "objects", e);
-	float *shares = mem_alloc(room, sizeof *shares, "objects", e);
-	const float cut = lifted_cut_of(l, object);
-	size_t n = 0;
-	int bad = !ids || !shares;
-
-	for (size_t i = begin; i < begin + room && !bad; i++)
-		if (l->share[i] > cut && size_of(s, (size_t)l->index[i]) > 0) {
-			ids[n] = l->index[i];
-			shares[n++] = l->share[i] - cut;
-		}
-	bad = bad || extent_find(x, s, ids, shares, n, up, e);
-	free(ids);
-	free(shares);
-	return bad ? -1 : 0;
 }
 
 /* How far a colour depends on where it is seen from: the sum of the squares of the first degree. */
@@ -113,9 +82,11 @@ static double view_dependence(const struct splats *s, const float *sh)
 static int take_looks(struct arranged *o, const struct splats *s, const struct extent *own, size_t step,
 	const double *weight, const double up[3], struct surface_point *points, struct err *e)
 {
+	struct colour_labs words;
 	double total = 0;
 	size_t n = 0;
 
+	colour_labs_make(&words);
 	for (size_t i = 0; i < own->n; i += step)
 		total += weight[i];
 	for (size_t i = 0; i < own->n; i += step) {
@@ -127,7 +98,7 @@ static int take_looks(struct arranged *o, const struct splats *s, const struct e
 		for (size_t k = 0; k < 3; k++) {
 			o->lab[k] += weight[i] / total * lab[k];
 		}
-		colour_call(lab, weight[i] / total, o->colours);
+		colour_call(&words, lab, weight[i] / total, o->colours);
 		const float *mean = s->means + 3 * (size_t)own->ids[i];
 		points[n++] = (struct surface_point){
 			{mean[0], mean[1], mean[2]}, {lab[0], lab[1], lab[2]}, weight[i]};
@@ -138,36 +109,28 @@ static int take_looks(struct arranged *o, const struct splats *s, const struct e
 }
 
 /* The points of object o, after those before it. */
-static int take_points(struct arrangement *a, size_t o, const struct lifted *l, const struct splats *s,
+static int take_points(struct arrangement *a, size_t o, const struct extent *own, const struct splats *s,
 	const double up[3], struct err *e)
 {
-	struct extent own;
-
-	if (find_own(&own, l, o, s, up, e))
-		return -1;
-	const size_t step = 1 + own.n / POINTS;
-	double *weight = mem_alloc(own.n, sizeof *weight, "objects", e);
-	double *sorted = mem_alloc(own.n, sizeof *sorted, "objects", e);
-	struct surface_point *points = mem_alloc(POINTS + 1, sizeof *points, "objects", e);
+	const size_t step = 1 + own->n / POINTS;
+	SCOPED double *weight = mem_alloc(own->n, sizeof *weight, "objects", e);
+	SCOPED double *sorted = mem_alloc(own->n, sizeof *sorted, "objects", e);
+	SCOPED struct surface_point *points = mem_alloc(POINTS + 1, sizeof *points, "objects", e);
 	int bad = !weight || !sorted || !points;
 	a->objects[o].begin = a->point_count;
-	a->objects[o].is_there = own.n > 0;
-	if (!bad && own.n) {
-		for (size_t i = 0; i < own.n; i++)
-			weight[i] = size_of(s, (size_t)own.ids[i]);
-		level_weights(weight, sorted, own.n);
-		bad = take_looks(&a->objects[o], s, &own, step, weight, up, points, e);
-		for (size_t i = 0; i < own.n; i += step) {
-			const float *mean = s->means + 3 * (size_t)own.ids[i];
+	a->objects[o].is_there = own->n > 0;
+	if (!bad && own->n) {
+		for (size_t i = 0; i < own->n; i++)
+			weight[i] = extent_part(s, (size_t)own->ids[i]);
+		level_weights(weight, sorted, own->n);
+		bad = take_looks(&a->objects[o], s, own, step, weight, up, points, e);
+		for (size_t i = 0; i < own->n; i += step) {
+			const float *mean = s->means + 3 * (size_t)own->ids[i];
 			a->points[a->point_count++] = (struct arranged_point){
-				{mean[0], mean[1], mean[2]}, weight[i] * own.weight[i]};
+				{mean[0], mean[1], mean[2]}, weight[i] * own->weight[i]};
 		}
 	}
 	a->objects[o].count = a->point_count - a->objects[o].begin;
-	free(weight);
-	free(sorted);
-	free(points);
-	extent_free(&own);
 	return bad ? -1 : 0;
 }
 
@@ -300,6 +263,7 @@ int arrangement_make(struct arrangement *a, const struct lifted *l, const struct
 {
 	static const struct viewpoint usual = {.kind = VIEWPOINT_USUAL};
 	size_t along = l->objects * l->objects;
+	struct extent *found = NULL;
 	double up[3];
 
 	*a = (struct arrangement){.n = l->objects, .cameras = cameras};
@@ -308,8 +272,10 @@ int arrangement_make(struct arrangement *a, const struct lifted *l, const struct
 	a->along = mem_alloc(along > POINTS ? along : POINTS + 1, sizeof *a->along, "objects", e);
 	int bad = !a->objects || !a->points || !a->along;
 	cameras_up(cameras, up);
+	bad = bad || (!l->extents && lifted_extents(&found, l, splats, up, e));
 	for (size_t o = 0; o < a->n && !bad; o++)
-		bad = take_points(a, o, l, splats, up, e);
+		bad = take_points(a, o, &(found ? found : l->extents)[o], splats, up, e);
+	lifted_extents_free(found, a->n);
 	if (!bad)
 		compare_gloss(a);
 	if (bad)

@@ -50,7 +50,7 @@ static int64_t indptr[OBJECTS + 1];
 static float confidence[OBJECTS] = {1, 1, 1, 1};
 static struct splats splats = {N, 1, SPLATS_NEAR, means, scales, quats, opacities, sh};
 static struct lifted lifted = {N, OBJECTS, names, confidence, indptr, index_of, share, 6, WIDTH, object,
-	pieces, pieces, offsets, words, NULL, NULL};
+	pieces, pieces, offsets, words, NULL, NULL, NULL};
 static struct camera view;
 static struct cameras cameras = {1, &view};
 

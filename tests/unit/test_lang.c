@@ -40,9 +40,11 @@ static void colours(void)
 	CHECK(colour_words_alike(colour_word("red"), colour_word("blue")) < 0.01, "blue is not red");
 	/* a colour is called by the nearest words, and the parts add up */
 	double share[COLOUR_WORDS] = {0};
+	struct colour_labs all;
 	colour_lab(red, lab);
-	colour_call(lab, 0.5, share);
-	colour_call(lab, 0.5, share);
+	colour_labs_make(&all);
+	colour_call(&all, lab, 0.5, share);
+	colour_call(&all, lab, 0.5, share);
 	CHECK(share[colour_word("red")] > 0.3 && share[colour_word("scarlet")] > 0.9 &&
 			share[colour_word("green")] < 0.01,
 		"red is called %g red, %g green", share[colour_word("red")], share[colour_word("green")]);

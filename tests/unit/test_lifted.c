@@ -18,7 +18,7 @@ static char *texts[] = {"a bottle", "", "bottle"}, *pieces[] = {"a bottle", "", 
 static struct lifted example(void)
 {
 	return (struct lifted){7, 3, names, confidence, indptr, index_of, share, 3, 2, object, texts, pieces,
-		offsets, words, middle, cut};
+		offsets, words, middle, cut, NULL};
 }
 
 static void round_trip(void)
@@ -79,7 +79,7 @@ static void another_model_is_added(void)
 	static char *more_names[] = {"\xe7\x93\xb6", "lid"}, *more_texts[] = {"lid", "the bottle"};
 	const struct lifted in = example(), more = {7, 2, more_names, more_sure, more_indptr, more_index,
 						    more_share, 2, 2, more_object, more_texts, more_texts,
-						    more_offsets, more_words, more_words, NULL};
+						    more_offsets, more_words, more_words, NULL, NULL};
 	struct lifted l;
 	struct origin of;
 	struct err e = {0};

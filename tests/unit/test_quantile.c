@@ -3,6 +3,8 @@
 #include "base/rng.h"
 #include "unit.h"
 
+#include <string.h>
+
 static int by_place(const void *a, const void *b)
 {
 	const struct quantile_item *p = a, *q = b;
@@ -29,7 +31,7 @@ static double naive(const struct quantile_item *sorted, size_t n, double share)
 static void weighted(void)
 {
 	enum { MOST = 200 };
-	struct quantile_item items[MOST], sorted[MOST];
+	struct quantile_item items[MOST], sorted[MOST], ordered[MOST], other[MOST];
 	static const double shares[] = {0, 0.0625, 0.25, 0.5, 0.75, 0.96875, 1};
 	struct rng r;
 
@@ -37,9 +39,11 @@ static void weighted(void)
 	for (int round = 0; round < 500; round++) {
 		const size_t n = 1 + rng_below(&r, MOST);
 		for (size_t i = 0; i < n; i++)
-			sorted[i] = items[i] = (struct quantile_item){
+			ordered[i] = sorted[i] = items[i] = (struct quantile_item){
 				rng_below(&r, 50) - 20.5, 1 + rng_below(&r, round % 2 ? 1 : 9)};
 		qsort(sorted, n, sizeof *sorted, by_place);
+		quantile_order(ordered, other, n);
+		CHECK(!memcmp(ordered, sorted, n * sizeof *sorted), "round %d: another order", round);
 		for (size_t k = 0; k < sizeof shares / sizeof *shares; k++) {
 			const double got = quantile_weighted(items, n, shares[k]);
 			CHECK(got == naive(sorted, n, shares[k]), "round %d, %g: %g", round, shares[k], got);

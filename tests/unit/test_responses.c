@@ -33,7 +33,7 @@ static int64_t indptr[] = {0, 1, 4, 6}, offsets[] = {0, 1, 2, 3};
 static int32_t index_of[] = {0, 0, 1, 2, 0, 3}, object[] = {0, 1, 2};
 static float words[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 static const struct lifted lifted = {N, 3, names, confidence, indptr, index_of, share, 3, 3, object, names,
-	names, offsets, words, NULL, NULL};
+	names, offsets, words, NULL, NULL, NULL};
 
 /* The large one, the small one, again the large one, nothing, the small or the large one, and no words. */
 static const int64_t asked_offsets[] = {0, 1, 2, 3, 3, 4, 4};

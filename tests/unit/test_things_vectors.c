@@ -83,7 +83,7 @@ static int ask(const char *text, const char *thing, const char *of)
 	static const struct splats splats = {N, 1, SPLATS_NEAR, means, scales, quats, opacities, sh};
 	static const struct cameras cameras = {1, &view};
 	const struct lifted lifted = {N, OBJECTS, names, confidence, indptr, index_of, share, 0, WIDTH, NULL,
-		NULL, NULL, offsets, no_words, NULL, NULL};
+		NULL, NULL, offsets, no_words, NULL, NULL, NULL};
 	const struct parser parser = {.encoder = of};
 	const struct choose_scene scene = {&lifted, &splats, &cameras, &parser, 1};
 	char chosen[OBJECTS];
