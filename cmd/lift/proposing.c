@@ -11,7 +11,6 @@
 #include "geom/views.h"
 #include "mask/shrink.h"
 #include "splat/backproject.h"
-#include "splat/render.h"
 #include "splat/weights_pack.h"
 
 #include <math.h>
@@ -30,7 +29,7 @@ void proposing_free(struct proposing *p)
 	for (size_t v = 0; v < p->scene.cameras.n && p->views; v++) {
 		pieces_free(&p->views[v].pieces);
 		free(p->views[v].boxes);
-		free(p->views[v].nodes);
+		free(p->views[v].shown.nodes);
 	}
 	mem_free_all(p->views, p->weight, p->score);
 	region_scores_free(&p->scores);
@@ -49,8 +48,8 @@ static int weigh_view(struct proposing *p, size_t at, struct weights_room *room,
 
 	if (weights_open_in(&w, room, WEIGHTS_ROWS, p->options->weights, &p->scene, at, e))
 		return -1;
-	v->height = w.height;
-	v->width = w.width;
+	v->shown.height = w.height;
+	v->shown.width = w.width;
 	const struct view_weights rows = weights_view(&w);
 	backproject_weight(&rows, p->weight);
 	return 0;
@@ -69,9 +68,9 @@ static int read_pieces(void *context, int worker, size_t at, struct err *e)
 	if (warping_read_photograph(
 		    &p->scene.cameras.views[at], p->options->scene, 0, &rgb, &height, &width, e))
 		return -1;
-	SCOPED uint8_t *small = shrink_picture(rgb, height, width, v->height, v->width, e);
+	SCOPED uint8_t *small = shrink_picture(rgb, height, width, v->shown.height, v->shown.width, e);
 	free(rgb);
-	return !small || pieces_make(&v->pieces, small, v->height, v->width, e) ? -1 : 0;
+	return !small || pieces_make(&v->pieces, small, v->shown.height, v->shown.width, e) ? -1 : 0;
 }
 
 /* The words for what boxes are of, in their own order. */
@@ -106,7 +105,7 @@ static int32_t class_of(const struct proposing *p, const char *word)
 /* A detection of a view, in pixels of its weights. */
 static int take_box(struct proposing_view *v, const struct detection *d, int32_t class, struct err *e)
 {
-	const double across = (double)v->width / d->width, down = (double)v->height / d->height;
+	const double across = (double)v->shown.width / d->width, down = (double)v->shown.height / d->height;
 	size_t room = v->box_count;
 
 	if (mem_grow((void **)&v->boxes, &room, v->box_count + 1, sizeof *v->boxes, "boxes", e))
@@ -253,15 +252,6 @@ static int grow_tree(struct proposing *p, struct err *e)
 	return 0;
 }
 
-/* The nodes of a view's pixels. */
-static int find_nodes(struct proposing *p, size_t at, const struct view_weights *rows, struct err *e)
-{
-	struct proposing_view *v = &p->views[at];
-
-	v->nodes = mem_alloc((size_t)v->height, (size_t)v->width * sizeof *v->nodes, "regions", e);
-	return v->nodes ? region_tree_pixels(&p->tree, rows, v->nodes, e) : -1;
-}
-
 static int score_view(struct proposing *p, size_t at, struct weights_room *room, struct err *e)
 {
 	struct proposing_view *v = &p->views[at];
@@ -270,8 +260,9 @@ static int score_view(struct proposing *p, size_t at, struct weights_room *room,
 	if (weights_open_in(&w, room, WEIGHTS_ROWS, p->options->weights, &p->scene, at, e))
 		return -1;
 	const struct view_weights rows = weights_view(&w);
-	return find_nodes(p, at, &rows, e) || region_scores_view(&p->scores, &p->tree, v->nodes, &v->pieces,
-						      v->boxes, v->box_count, e)
+	return region_picture_take(&v->shown, &p->tree, &rows, e) ||
+			       region_scores_view(&p->scores, &p->tree, v->shown.nodes, &v->pieces, v->boxes,
+				       v->box_count, e)
 		       ? -1
 		       : 0;
 }
@@ -305,27 +296,10 @@ static int choose_regions(struct proposing *p, const struct report *to, struct e
 	return 0;
 }
 
-/* A view that has no picture of nodes yet, rendered at the size of the others. */
-static int render(struct proposing *p, size_t at, double scale, struct err *e)
-{
-	struct proposing_view *v = &p->views[at];
-	const struct camera *c = &p->scene.cameras.views[at];
-	SCOPED_BY(render_weights_free) struct render_weights w = {0};
-
-	camera_scaled_size(c, scale, &v->width, &v->height);
-	const struct camera small = camera_resize(c, v->width, v->height);
-	struct render_view *view = render_prepare(&p->scene.splats, &small, e);
-	const int bad = !view || render_weights(view, &w, e);
-	render_free(view);
-	const struct view_weights rows = {
-		(size_t)v->height * (size_t)v->width, p->scene.splats.n, w.indptr, w.index, w.weight};
-	return bad || find_nodes(p, at, &rows, e) ? -1 : 0;
-}
-
 static int put_view(struct proposing *p, size_t at, FILE *out, struct err *e)
 {
 	const struct proposing_view *v = &p->views[at];
-	SCOPED uint8_t *mask = mem_alloc((size_t)v->height, (size_t)v->width, "masks", e);
+	SCOPED uint8_t *mask = mem_alloc((size_t)v->shown.height, (size_t)v->shown.width, "masks", e);
 	char name[32];
 	int bad = !mask;
 
@@ -336,9 +310,10 @@ static int put_view(struct proposing *p, size_t at, FILE *out, struct err *e)
 			.score = p->score[node],
 			.visible = NAN};
 		snprintf(name, sizeof name, "region-%d", k + 1);
-		if (!region_tree_mask(&p->tree, v->nodes, (size_t)v->height * (size_t)v->width, node, mask))
+		if (!region_tree_mask(&p->tree, v->shown.nodes,
+			    (size_t)v->shown.height * (size_t)v->shown.width, node, mask))
 			continue;
-		bad = rle_encode(&m.rle, mask, v->height, v->width, e) || masks_put(out, &m, e);
+		bad = rle_encode(&m.rle, mask, v->shown.height, v->shown.width, e) || masks_put(out, &m, e);
 		rle_free(&m.rle);
 	}
 	return bad ? -1 : 0;
@@ -351,12 +326,15 @@ static int put_all(struct proposing *p, FILE *out, struct err *e)
 
 	for (size_t at = 0; at < c->n; at++)
 		if (p->views[at].is_used)
-			scale = (double)p->views[at].width / c->views[at].width;
+			scale = (double)p->views[at].shown.width / c->views[at].width;
 	for (size_t at = 0; at < c->n; at++) {
 		const int is_train = c->views[at].split == SPLIT_TRAIN;
 		if (p->options->split != PROPOSING_ALL && is_train != (p->options->split == PROPOSING_TRAIN))
 			continue;
-		if ((!p->views[at].nodes && render(p, at, scale, e)) || put_view(p, at, out, e))
+		struct region_picture *shown = &p->views[at].shown;
+		if ((!shown->nodes && region_picture_render(
+					      shown, &p->tree, &p->scene.splats, &c->views[at], scale, e)) ||
+			put_view(p, at, out, e))
 			return -1;
 	}
 	return 0;

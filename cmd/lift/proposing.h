@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 #include "base/report.h"
+#include "cmd/masks/region_picture.h"
 #include "formats/records/detections.h"
 #include "formats/scene/scene.h"
 #include "propose/affinity.h"
@@ -28,11 +29,11 @@ enum { PROPOSING_NESTED = 110, PROPOSING_DISJOINT = 40 };
 
 /* A view, at the size of its weights. */
 struct proposing_view {
-	int is_used, height, width;
+	int is_used;
+	struct region_picture shown;
 	struct pieces pieces;
 	size_t box_count;
 	struct affinity_box *boxes;
-	int32_t *nodes; /* (height,width) of the tree */
 };
 
 struct proposing {

@@ -5,7 +5,6 @@
 #include "formats/records/masks.h"
 #include "formats/scene/weights.h"
 #include "propose/region_pick.h"
-#include "splat/render.h"
 
 #include <math.h>
 
@@ -18,49 +17,27 @@ void pointing_free(struct pointing *p)
 	weights_room_free(&p->room);
 	regions_file_free(&p->regions);
 	scene_free(&p->scene);
-	mem_free_all(p->views, p->clicks, p->is_in);
-}
-
-static int find_nodes(
-	const struct pointing *p, struct pointing_view *l, const struct view_weights *w, struct err *e)
-{
-	l->nodes = mem_alloc(w->pixels, sizeof *l->nodes, "regions", e);
-	return l->nodes ? region_tree_pixels(&p->regions.tree, w, l->nodes, e) : -1;
-}
-
-static int render(const struct pointing *p, size_t at, struct err *e)
-{
-	const struct camera *c = &p->scene.cameras.views[at];
-	struct pointing_view *l = &p->views[at];
-	SCOPED_BY(render_weights_free) struct render_weights w = {0};
-
-	camera_scaled_size(c, POINTING_SCALE, &l->width, &l->height);
-	const struct camera small = camera_resize(c, l->width, l->height);
-	struct render_view *view = render_prepare(&p->scene.splats, &small, e);
-	const int bad = !view || render_weights(view, &w, e);
-	render_free(view);
-	const struct view_weights rows = {
-		(size_t)l->height * (size_t)l->width, p->scene.splats.n, w.indptr, w.index, w.weight};
-	return bad ? -1 : find_nodes(p, l, &rows, e);
+	mem_free_all(p->views, p->clicks, p->is_in, p->area);
 }
 
 int pointing_look(struct pointing *p, size_t at, struct err *e)
 {
 	const char *folder = p->weights ? p->weights : "";
-	struct pointing_view *l = &p->views[at];
+	struct region_picture *l = &p->views[at];
 	SCOPED char *path = file_join(folder, p->scene.cameras.views[at].name, ".safetensors", e);
 	SCOPED_BY(weights_close) struct weights w = {0};
 
 	if (!path || l->nodes)
 		return path ? 0 : -1;
 	if (!*folder || !file_exists(path))
-		return render(p, at, e);
+		return region_picture_render(l, &p->regions.tree, &p->scene.splats,
+			&p->scene.cameras.views[at], POINTING_SCALE, e);
 	if (weights_open_in(&w, &p->room, WEIGHTS_ROWS, folder, &p->scene, at, e))
 		return -1;
 	l->height = w.height;
 	l->width = w.width;
 	const struct view_weights rows = weights_view(&w);
-	return find_nodes(p, l, &rows, e);
+	return region_picture_take(l, &p->regions.tree, &rows, e);
 }
 
 /* The next of "VIEW:x,y VIEW:x,y", with so many numbers, in shares of the view: 1, 0 at the end, -1 with *e.
@@ -105,11 +82,13 @@ static int take_place(struct pointing *p, const char **rest, const char *option,
 
 int pointing_click(struct pointing *p, size_t view, const double at[2], int is_outside, struct err *e)
 {
-	const struct pointing_view *l = &p->views[view];
+	const struct region_picture *l = &p->views[view];
 
 	if (pointing_look(p, view, e) || mem_grow((void **)&p->clicks, &p->click_room, p->click_count + 1,
 						 sizeof *p->clicks, "places", e))
 		return -1;
+	if (!p->click_count)
+		region_tree_areas(&p->regions.tree, l->nodes, (size_t)l->height * (size_t)l->width, p->area);
 	const size_t x = (size_t)(at[0] * l->width), y = (size_t)(at[1] * l->height);
 	p->clicks[p->click_count++] = (struct region_click){l->nodes[y * (size_t)l->width + x], is_outside};
 	return 0;
@@ -130,15 +109,14 @@ static int take_clicks(
 
 static int nothing_there(struct err *e)
 {
-	return err_set(e, ERR_CHECK, "no region is there, or each that is has a place outside too");
+	return err_set(e, ERR_CHECK, "no region is there");
 }
 
 int pointing_choose(struct pointing *p, int larger, struct err *e)
 {
 	const struct region_tree *t = &p->regions.tree;
 
-	memset(p->is_in, 0, (size_t)t->n);
-	return region_pick(t, p->regions.score, p->clicks, p->click_count, larger, p->is_in)
+	return region_pick(t, p->regions.score, p->area, p->clicks, p->click_count, larger, p->is_in)
 		       ? 0
 		       : nothing_there(e);
 }
@@ -146,7 +124,7 @@ int pointing_choose(struct pointing *p, int larger, struct err *e)
 int pointing_choose_boxed(struct pointing *p, size_t view, const double box[4], struct err *e)
 {
 	const struct region_tree *t = &p->regions.tree;
-	const struct pointing_view *l = &p->views[view];
+	const struct region_picture *l = &p->views[view];
 	SCOPED struct region_shown *shown = mem_alloc((size_t)t->n, sizeof *shown, "regions", e);
 
 	if (!shown || pointing_look(p, view, e) ||
@@ -175,7 +153,21 @@ static int choose_boxed(struct pointing *p, const char *text, struct err *e)
 	return pointing_choose_boxed(p, view, box, e);
 }
 
-static int choose(struct pointing *p, const struct pointing_options *o, struct err *e)
+/* Places that the regions cannot tell apart. */
+static void warn_of_clicks(const struct pointing *p, const struct report *to)
+{
+	size_t wrong = 0;
+
+	for (size_t k = 0; k < p->click_count; k++)
+		wrong += p->clicks[k].node >= 0 && p->is_in[p->clicks[k].node] == p->clicks[k].is_outside;
+	if (wrong)
+		report_warn(to,
+			"%zu of %zu places are not as was asked: no small region has them without the others; --larger and --smaller choose another to begin with",
+			wrong, p->click_count);
+}
+
+static int choose(
+	struct pointing *p, const struct pointing_options *o, const struct report *to, struct err *e)
 {
 	if (o->box)
 		return choose_boxed(p, o->box, e);
@@ -183,7 +175,10 @@ static int choose(struct pointing *p, const struct pointing_options *o, struct e
 		return -1;
 	if (!p->click_count)
 		return err_set(e, ERR_USAGE, "--point: '%s' is not VIEW:x,y", o->points);
-	return pointing_choose(p, (int)(o->larger - o->smaller), e);
+	if (pointing_choose(p, (int)(o->larger - o->smaller), e))
+		return -1;
+	warn_of_clicks(p, to);
+	return 0;
 }
 
 int pointing_mask(struct pointing *p, size_t view, struct rle *mask, size_t *area, struct err *e)
@@ -191,7 +186,7 @@ int pointing_mask(struct pointing *p, size_t view, struct rle *mask, size_t *are
 	*mask = (struct rle){0};
 	if (pointing_look(p, view, e))
 		return -1;
-	const struct pointing_view *l = &p->views[view];
+	const struct region_picture *l = &p->views[view];
 	const size_t pixels = (size_t)l->height * (size_t)l->width;
 	SCOPED uint8_t *is_on = mem_alloc(pixels, 1, "masks", e);
 	*area = 0;
@@ -230,7 +225,8 @@ int pointing_open(
 			scene, p->scene.splats.n);
 	p->views = mem_zalloc(p->scene.cameras.n, sizeof *p->views, "views", e);
 	p->is_in = mem_zalloc((size_t)p->regions.tree.n, 1, "regions", e);
-	return p->views && p->is_in ? 0 : -1;
+	p->area = mem_zalloc((size_t)p->regions.tree.n, sizeof *p->area, "regions", e);
+	return p->views && p->is_in && p->area ? 0 : -1;
 }
 
 int pointing_write(
@@ -239,8 +235,8 @@ int pointing_write(
 	struct file_out out;
 	size_t masks = 0;
 
-	if (pointing_open(p, options->scene, options->tree, options->weights, e) || choose(p, options, e) ||
-		file_out_open(&out, options->output, e))
+	if (pointing_open(p, options->scene, options->tree, options->weights, e) ||
+		choose(p, options, to, e) || file_out_open(&out, options->output, e))
 		return -1;
 	const int bad = file_out_end(&out, put_all(p, options->name, out.stream, &masks, e), e);
 	report_note(to, 1, "%zu masks", masks);

@@ -3,6 +3,7 @@
 
 #include "base/err.h"
 #include "base/report.h"
+#include "cmd/masks/region_picture.h"
 #include "formats/scene/proposed.h"
 #include "formats/scene/scene.h"
 #include "mask/rle.h"
@@ -19,20 +20,15 @@ struct pointing_options {
 	long long larger, smaller; /* steps */
 };
 
-/* The nodes of a view's pixels. */
-struct pointing_view {
-	int height, width;
-	int32_t *nodes; /* (height,width); NULL: not yet looked at */
-};
-
 struct pointing {
 	const char *weights; /* the folder; NULL: none */
 	struct scene scene;
 	struct regions_file regions;
 	struct weights_room room;
-	struct pointing_view *views; /* (scene.cameras.n) */
+	struct region_picture *views; /* (scene.cameras.n) */
 	size_t click_count, click_room;
 	struct region_click *clicks;
+	float *area;	/* (nodes) in the view of the first click */
 	uint8_t *is_in; /* (nodes) of what is meant */
 };
 

@@ -174,6 +174,17 @@ size_t region_tree_mask(
 	return count;
 }
 
+void region_tree_areas(const struct region_tree *t, const int32_t *at, size_t pixels, float *area)
+{
+	memset(area, 0, (size_t)t->n * sizeof *area);
+	for (size_t p = 0; p < pixels; p++)
+		if (at[p] >= 0)
+			area[at[p]]++;
+	for (int32_t k = t->n - 1; k >= 0; k--)
+		if (t->parent[k] >= 0)
+			area[t->parent[k]] += area[k];
+}
+
 /* Of counts (n): where more than `cut` have passed, from the one end and from the other. */
 static void trim(const int32_t *count, int n, int32_t cut, int32_t *from, int32_t *to)
 {

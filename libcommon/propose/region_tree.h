@@ -35,6 +35,9 @@ int region_tree_pixels(const struct region_tree *t, const struct view_weights *w
 size_t region_tree_mask(
 	const struct region_tree *t, const int32_t *at, size_t pixels, int32_t node, uint8_t *mask);
 
+/* area (n): the pixels of each region in a picture of nodes. */
+void region_tree_areas(const struct region_tree *t, const int32_t *at, size_t pixels, float *area);
+
 /* What a view shows of a region. */
 struct region_shown {
 	int32_t area; /* pixels */

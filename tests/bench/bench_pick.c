@@ -1,7 +1,8 @@
 /* bench_pick SCENE WEIGHTS REGIONS TRUTH: how well a click means the thing that was meant, by simulated
- * clicks in each true mask: at its deepest point, then twice at the deepest point of what is wrong; and by
- * the box around it. The best of larger and smaller regions is chosen by the mask in the clicked view. Each
- * answer is scored in all labelled views that have weights: mIoU, and the shares of clicks with 0.5 and 0.75.
+ * clicks in each true mask: at its deepest point, then twice at the deepest point of what is wrong, with and
+ * without a look at larger and smaller regions after each; and by the box around it. The best of larger and
+ * smaller regions is chosen by the mask in the clicked view. Each answer is scored in all labelled views that
+ * have weights: mIoU, and the shares of clicks with 0.5 and 0.75.
  */
 #include "base/mem.h"
 #include "formats/records/masks.h"
@@ -27,6 +28,7 @@ static struct scene scene;
 static struct masks truth;
 static struct labelled of[MOST_TRUTH];
 static uint8_t *is_in;
+static float *area_shown;
 
 static void stop(const struct err *e)
 {
@@ -91,14 +93,14 @@ static void choose_size(const struct region_click *clicks, size_t n, const struc
 	int best = 0;
 
 	for (int larger = -LARGEST; larger <= LARGEST; larger++) {
-		region_pick(&regions.tree, regions.score, clicks, n, larger, is_in);
+		region_pick(&regions.tree, regions.score, area_shown, clicks, n, larger, is_in);
 		const double now = iou(l);
 		if (now > most || (now == most && abs(larger) < abs(best))) {
 			most = now;
 			best = larger;
 		}
 	}
-	region_pick(&regions.tree, regions.score, clicks, n, best, is_in);
+	region_pick(&regions.tree, regions.score, area_shown, clicks, n, best, is_in);
 }
 
 static void read_truth(const char *weights, const char *path)
@@ -145,24 +147,26 @@ static void count(struct tally *t, double x)
 	t->most += x >= 0.75;
 }
 
-static void click_all(size_t k, struct tally *tallies)
+/* One click and three, the size of each chosen by the clicked view or left as it is. */
+static void click_all(size_t k, int has_size, struct tally *tallies)
 {
 	const struct labelled *l = &of[k];
 	struct region_click clicks[CLICKS];
 	int area, more;
 
+	region_tree_areas(&regions.tree, l->nodes, (size_t)l->height * (size_t)l->width, area_shown);
 	for (size_t n = 0; n < CLICKS; n++) {
 		int at = deepest(l, 1, n ? 0 : -1, &area);
 		const int wrong = n ? deepest(l, 0, 1, &more) : 0;
 		const int is_outside = n && more > area;
 		at = is_outside ? wrong : at;
 		clicks[n] = (struct region_click){l->nodes[at], is_outside};
-		region_pick(&regions.tree, regions.score, clicks, n + 1, 0, is_in);
+		if (has_size)
+			choose_size(clicks, n + 1, l);
+		else
+			region_pick(&regions.tree, regions.score, area_shown, clicks, n + 1, 0, is_in);
 		if (!n || n + 1 == CLICKS)
 			count(&tallies[n ? 2 : 0], iou_all(k));
-		choose_size(clicks, n + 1, l);
-		if (!n || n + 1 == CLICKS)
-			count(&tallies[n ? 3 : 1], iou_all(k));
 	}
 }
 
@@ -201,10 +205,12 @@ int main(int argc, char **argv)
 	if (scene_read(&scene, argv[1], &e) || regions_file_read(&regions, argv[3], &e))
 		stop(&e);
 	is_in = calloc((size_t)regions.tree.n, 1);
+	area_shown = calloc((size_t)regions.tree.n, sizeof *area_shown);
 	read_truth(argv[2], argv[4]);
 	for (size_t k = 0; k < truth.n; k++)
 		if (of[k].nodes && rle_area(&truth.items[k].rle)) {
-			click_all(k, t);
+			click_all(k, 0, t);
+			click_all(k, 1, t + 1);
 			box(k, &t[4]);
 		}
 	for (int k = 0; k < 5; k++)

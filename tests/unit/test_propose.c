@@ -453,14 +453,25 @@ static void test_pick(void)
 		uint8_t is_in[5];
 	} cases[] = {{{{2, 0}, {-1, 0}}, 0, {0, 1, 1, 1, 0}}, {{{3, 0}, {-1, 0}}, 0, {0, 0, 0, 1, 0}},
 		{{{3, 0}, {-1, 0}}, 1, {0, 1, 1, 1, 0}}, {{{2, 0}, {-1, 0}}, -1, {0, 0, 1, 0, 0}},
-		{{{2, 0}, {-1, 0}}, 9, {1, 1, 1, 1, 1}}, {{{2, 0}, {3, 1}}, 0, {0, 0, 1, 0, 0}},
-		{{{2, 0}, {4, 1}}, 9, {1, 1, 1, 1, 0}}, {{{3, 0}, {4, 0}}, 0, {0, 0, 0, 1, 1}},
-		{{{2, 0}, {2, 1}}, 0, {0, 0, 0, 0, 0}}, {{{-1, 0}, {4, 1}}, 0, {0, 0, 0, 0, 0}}};
+		{{{2, 0}, {-1, 0}}, 9, {1, 1, 1, 1, 1}}, {{{2, 0}, {3, 1}}, 0, {0, 1, 1, 0, 0}},
+		{{{2, 0}, {4, 1}}, 9, {1, 1, 1, 1, 0}}, {{{3, 0}, {4, 0}}, 0, {0, 0, 0, 1, 0}},
+		{{{2, 0}, {3, 0}}, -1, {0, 0, 1, 1, 0}}, {{{2, 0}, {2, 1}}, 0, {0, 1, 1, 1, 0}},
+		{{{-1, 0}, {4, 1}}, 0, {0, 0, 0, 0, 0}}};
+	static const int own[5] = {34, 2, 50, 8, 6};
+	int32_t at[100];
 	uint8_t is_in[5];
+	float area[5];
 
 	region_tree_span(&t);
+	for (int k = 0, p = 0; k < 5; k++)
+		for (int i = 0; i < own[k]; i++)
+			at[p++] = k;
+	region_tree_areas(&t, at, 100, area);
+	CHECK(area[0] == 100 && area[1] == 60 && area[4] == 6, "areas %g %g %g", (double)area[0],
+		(double)area[1], (double)area[4]);
 	for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
-		const int32_t count = region_pick(&t, score, cases[k].clicks, 2, cases[k].larger, is_in);
+		const int32_t count =
+			region_pick(&t, score, area, cases[k].clicks, 2, cases[k].larger, is_in);
 		CHECK(!memcmp(is_in, cases[k].is_in, 5), "case %zu", k);
 		CHECK((count > 0) == (memchr(is_in, 1, 5) != NULL), "case %zu: %d regions", k, count);
 	}
