@@ -37,6 +37,7 @@ missing_input() {
 		refer-render --scene none --text none --model none -o out
 		refer-locate --scene none --text none --model none -o out
 		refer-ask -o out none question
+		refer-say -o out none
 		refer-report -o out none
 		refer-serve none
 		miou-score --truth none none

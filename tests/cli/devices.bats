@@ -49,6 +49,7 @@ commands() {
 		refer-render --scene scene --text text.safetensors --model model.safetensors -o out
 		refer-locate --scene scene --text text.safetensors --model model.safetensors -o out
 		refer-ask --encoder encoder -o out kitchen box
+		refer-say --quiet --encoder encoder --each 2 -o out kitchen
 		refer-report -o out kitchen
 		miou-score --truth truth.jsonl -o out pred.jsonl
 	END

@@ -101,7 +101,7 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 	refuses "-o pred.jsonl would overwrite PREDICTIONS pred.jsonl" miou-score --truth truth.jsonl -o pred.jsonl pred.jsonl
 }
 
-@test "text-parse, parse-train, refer-ask, mask-import, box-detect, mask-export, gs-transform, feature-lift, feature-query, refer-report" {
+@test "text-parse, parse-train, refer-ask, refer-say, mask-import, box-detect, mask-export, gs-transform, feature-lift, feature-query, refer-report" {
 	refuses "-o text.safetensors would overwrite TEXT text.safetensors" text-parse -o text.safetensors text.safetensors
 	refuses "-o encoder/vocab.txt would overwrite --parser encoder/vocab.txt" text-parse --parser encoder/vocab.txt \
 		-o encoder/vocab.txt text.safetensors
@@ -112,6 +112,8 @@ locate() { refuses "$1" refer-locate --scene scene --text text.safetensors --mod
 	for file in text.safetensors scene/splats.safetensors lifted/model.safetensors; do
 		refuses "--picture kitchen/$file would be among the files of RUN kitchen" refer-ask --encoder encoder -o kitchen/$file kitchen box
 	done
+	refuses "-o kitchen/lifted/model.safetensors would be among the files of RUN kitchen" refer-say --encoder encoder \
+		-o kitchen/lifted/model.safetensors kitchen
 	refuses "-o labels.json would overwrite picture labels.json" mask-import -o labels.json labels.json
 	refuses "-o images/view_001.png would overwrite photograph images/view_001.png" box-detect --model detector -o images/view_001.png \
 		$(printf 'images/view_000.png %.0s' {1..20}) images/view_001.png # more files than a table of options has
