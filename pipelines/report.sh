@@ -33,8 +33,10 @@ answers() {
 
 if [ "$words" ]; then
 	answers "Without training" "$dir/lifted/predictions.test.score.json" "$(seconds weigh encode select3d lift render3.test)" "$dir/lifted/overlays"
-	answers "Trained as in the paper" "$dir/stage2/predictions.test.score.json" \
-		"$(seconds weigh encode select train1 teach train2 render2.test)" "$dir/stage2/overlays"
+	how="as in the paper" by=train1
+	! grep -q -e '--query parses' "$dir/log/train2.command" 2>/dev/null || how="on what the scene says of itself" by="select3d lift say encode2"
+	answers "Trained $how" "$dir/stage2/predictions.test.score.json" \
+		"$(seconds weigh encode select $by teach train2 render2.test)" "$dir/stage2/overlays"
 	exit
 fi
 
@@ -52,7 +54,7 @@ row "lifted, test views, more sentences" "$dir/lifted/asked.score.json"
 row "lifted, whole objects, test sentences" "$dir/lifted/whole.score.json"
 echo
 printf '%-12s %10s %12s\n' step seconds "peak MiB"
-for step in import weigh paint encode select train1 teach train2 render1.train render1.test render2.train render2.test overlay1 overlay2 \
+for step in import weigh paint encode select train1 teach say encode2 train2 render1.train render1.test render2.train render2.test overlay1 overlay2 \
 	select3d lift encode3 render3.train render3.test render3.asked render3.whole locate overlay3; do
 	[ -e "$dir/log/$step" ] || continue
 	sed -n 's/.*: \([0-9.]*\) s, peak memory \([0-9.]*\) MiB$/\1 \2/p' "$dir/log/$step" | tail -n 1 |

@@ -23,8 +23,10 @@
 # SCALE       size at which training looks at the views, as a share of theirs; default 0.25
 # ITERATIONS  steps of each stage; default 45000
 # SEED        default 1
-# TEACH       whose masks of the training views teach stage 2: stage1, as in the paper, or lifted, those of the objects that
-#             are lifted from masks selected in 3D; default lifted, which pipelines/ablation.md shows to be better
+# TEACH       who teaches stage 2: stage1, whose masks of the training views it learns from, as in the paper; or lifted, the objects
+#             that are lifted from masks selected in 3D; default lifted, which pipelines/ablation.md shows to be better
+# TAUGHT      sentences of each thing that refer-say writes for a stage 2 that is taught by lifted objects, which learns these objects
+#             by parses, in 2500 steps at most; default 100. 0: it learns their masks of the training views, as from stage1
 # SELECT, WEIGH, LIFT, TRAIN   more options for pseudomask-select, gs-weigh, refer-lift, refer-train, with blanks between them
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 # V           1 prints the commands too
@@ -41,6 +43,7 @@ SCALE ?= 0.25
 ITERATIONS ?= 45000
 SEED ?= 1
 TEACH ?= lifted
+TAUGHT ?= 100
 include $(here)common.mk
 $(foreach v,MASKS SENTENCES CANDIDATES,$(call take,$(v)))
 # How the things may be given, for whoever has given none.
@@ -55,7 +58,7 @@ endef
 # Of lift.mk, where sentences and photographs are all there is: regions that the sentences name.
 by_regions := $(and $(filter lifted,$(.DEFAULT_GOAL)),$(SENTENCES),$(IMAGES),$(if $(CANDIDATES)$(MASKS),,1))
 $(call check,SCENE SPLATS $(if $(by_regions),SENTENCES,$(if $(SENTENCES)$(CANDIDATES),$(if $(MASKS),,SENTENCES CANDIDATES),$(if $(filter regions,$(MAKECMDGOALS)),,MASKS))),SCENE SPLATS CAMERAS SENTENCES CANDIDATES MASKS NAMES TRUTH $(more_files),IMAGES TEST_VIEWS BERT SCALE \
-	ITERATIONS SEED TEACH SELECT WEIGH LIFT TRAIN BIN UNDISTORT $(more))
+	ITERATIONS SEED TEACH TAUGHT SELECT WEIGH LIFT TRAIN BIN UNDISTORT $(more))
 $(if $(filter stage1 lifted,$(TEACH)),,$(error $(called): TEACH is '$(TEACH)', and stage1 or lifted are what it can be))
 
 # Of a folder of 3DGS the last iteration, as gs-import takes it.
@@ -89,6 +92,13 @@ model1 := $(SCENE)/stage1/model.safetensors
 model2 := $(SCENE)/stage2/model.safetensors
 model3 := $(SCENE)/lifted/model.safetensors
 teacher := $(if $(filter lifted,$(TEACH)),3,1)
+# Sentences that the scene writes of itself, behind those of SENTENCES.
+taught := $(if $(filter lifted,$(TEACH)),$(filter-out 0,$(TAUGHT)))
+said := $(SCENE)/stage2/said.jsonl
+text1 := $(text)
+text2 := $(if $(taught),$(SCENE)/stage2/text.safetensors,$(text))
+steps2 := $(if $(taught),$(shell [ "$(ITERATIONS)" -lt 2500 ] 2>/dev/null || echo 2500))
+init2 := $(if $(taught),--query parses --interaction none --contrast none --init $(model3) --init-iterations $(or $(steps2),$(ITERATIONS)))
 predictions := $(foreach s,1 2,$(foreach t,$(splits),$(SCENE)/stage$(s)/predictions.$(t).jsonl))
 overlays := $(SCENE)/stage1/overlays/complete $(SCENE)/stage2/overlays/complete
 scores := $(if $(TRUTH),$(predictions:$(SCENE)/%.jsonl=$(SCENE)/%.score.json) $(if $(MASKS),,$(SCENE)/stage1/masks.score.json) $(SCENE)/stage2/masks.score.json)
@@ -112,8 +122,8 @@ command.weigh = gs-weigh --scale $(call quoted,SCALE) $(call options,WEIGH) -o $
 command.encode = text-encode --model $(call quoted,BERT) $(if $(SENTENCES),,--names) -o $(text) $(or $(SENTENCES),$(drawn))
 command.paint = mask-import $(if $(NAMES),--names $(NAMES)) --undistort $(SCENE)/scene -o $(drawn) $(foreach f,$(painted),$(call quote,$(f)))
 command.select = pseudomask-select $(call options,SELECT) -o $(masks1) $(candidates)
-train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text) --masks $(masks$(1)) \
-	--iterations $(call quoted,ITERATIONS) --seed $(call quoted,SEED) --resume --log $(SCENE)/stage$(1)/train.log \
+train = refer-train --scene $(SCENE)/scene --weights $(SCENE)/weights --text $(text$(1)) --masks $(masks$(1)) $(init$(1)) \
+	--iterations $(or $(steps$(1)),$(call quoted,ITERATIONS)) --seed $(call quoted,SEED) --resume --log $(SCENE)/stage$(1)/train.log \
 	$(call options,TRAIN) -o $(model$(1))
 render = refer-render --scene $(SCENE)/scene --text $(text) --model $(model$(1))
 predict = $(call render,$(1)) --sentences $(2) -o $(SCENE)/stage$(1)/predictions.$(2).jsonl
@@ -122,13 +132,16 @@ command.select3d = pseudomask-select --scene $(SCENE)/scene --weights $(SCENE)/w
 command.lift = refer-lift --scene $(SCENE)/scene --text $(text) $(if $(by_regions),--regions $(regions),--weights $(SCENE)/weights --masks \
 	$(masks3) $(if $(spare3),--spare $(spare3)) $(if $(MASKS),--names masks)) $(call options,LIFT) \
 	-o $(model3)
+command.say = refer-say --scene $(SCENE)/scene --model $(model3) --encoder $(call quoted,BERT) --each $(call quoted,TAUGHT) \
+	--seed $(call quoted,SEED) -o $(said) $(SCENE)
+command.encode2 = text-encode --model $(call quoted,BERT) -o $(text2) $(SCENE)/stage2/sentences.jsonl
 command.page = refer-report $(if $(TRUTH),--truth $(truth)) $(SCENE)
 command.score = miou-score --json --quiet --predicted-views --truth $(truth)
 $(foreach s,1 2,$(eval command.train$(s) = $$(call train,$(s))))
 $(foreach s,1 2,$(foreach t,train test,$(eval command.render$(s).$(t) = $$(call predict,$(s),$(t)))))
 $(foreach s,1 2,$(eval command.overlay$(s) = $$(call render,$(s)) --sentences $(lastword $(splits)) --overlay $(SCENE)/stage$(s)/overlays \
 	-o $(SCENE)/stage$(s)/overlays/masks.jsonl))
-$(call track,import weigh paint encode select select3d lift train1 train2 teach score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
+$(call track,import weigh paint encode select select3d lift train1 train2 teach say encode2 score overlay1 overlay2 $(foreach s,1 2,render$(s).train render$(s).test))
 
 $(SCENE)/log/%.command:
 	@mkdir -p $(@D) && printf %s $(call quote,$(command.$*)) >$@
@@ -180,6 +193,7 @@ endif
 # A checkpoint of a training that learned from something else is of no use.
 $(model1): $(masks1)
 $(model2): $(masks2)
+$(model2): $(if $(taught),$(text2) $(model3))
 $(SCENE)/stage%/model.safetensors: $(weights) $(text) $(SCENE)/log/train%.command
 	@mkdir -p $(@D)
 	@[ ! -e $@.checkpoint ] || [ -z "$$(find $^ -newer $@.checkpoint)" ] || rm $@.checkpoint
@@ -190,6 +204,16 @@ $(SCENE)/stage%/model.safetensors: $(weights) $(text) $(SCENE)/log/train%.comman
 $(model3): $(if $(by_regions),$(regions),$(masks3)) $(weights) $(text) $(SCENE)/log/lift.command
 	@mkdir -p $(@D)
 	$(call run,lift)
+
+ifneq ($(taught),)
+$(said): $(model3) $(SCENE)/log/say.command
+	@mkdir -p $(@D)
+	$(call run,say)
+
+$(text2): $(said) $(SENTENCES) $(SCENE)/log/encode2.command
+	@cat $(SENTENCES) $(said) >$(SCENE)/stage2/sentences.jsonl
+	$(call run,encode2)
+endif
 
 # What another model answers in the training views teaches stage 2.
 $(masks2): $(model$(teacher)) $(SCENE)/log/teach.command

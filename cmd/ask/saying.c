@@ -128,7 +128,10 @@ static const struct fact *draw_fact(struct saying *s, size_t object, int is_true
 /* Of relations of a kind: to each object, to as many pairs, or to none. */
 static int learn_kind(struct saying *s, const struct synth_row *kind, struct err *e)
 {
-	const size_t n = kind->anchors > 0 ? s->objects : 1, before = s->fact_count, none = s->objects;
+	const size_t n = kind->anchors < 1 ? 1
+			 : s->objects > 1  ? s->objects
+					   : 0,
+		     before = s->fact_count, none = s->objects;
 	SCOPED struct draft *drafts = mem_zalloc(n, sizeof *drafts, "sentences", e);
 	SCOPED const char **texts = mem_alloc(n, sizeof *texts, "sentences", e);
 	int bad = !drafts || !texts ||
@@ -137,7 +140,7 @@ static int learn_kind(struct saying *s, const struct synth_row *kind, struct err
 			  "relations", e);
 
 	for (size_t k = 0; k < n && !bad; k++) {
-		const size_t other = (k + 1 + rng_below(&s->rng, (uint32_t)s->objects - 1)) % s->objects;
+		const size_t other = n > 1 ? (k + 1 + rng_below(&s->rng, (uint32_t)n - 1)) % n : none;
 		s->facts[before + k] =
 			(struct fact){kind, {kind->anchors > 0 ? k : none, kind->anchors > 1 ? other : none}};
 		put(&drafts[k], "the thing");
@@ -341,10 +344,8 @@ int say(struct asking *a, const struct saying_options *o, const struct report *t
 	SCOPED_BY(saying_free) struct saying s = {.asking = a, .options = o};
 	struct file_out out;
 
-	if (a->model.lifted.objects < 2)
-		return err_set(e, ERR_FORMAT,
-			"%s: has %zu objects; what a sentence tells apart are two or more", a->files.model,
-			a->model.lifted.objects);
+	if (!a->model.lifted.objects)
+		return err_set(e, ERR_FORMAT, "%s: has no objects to say anything of", a->files.model);
 	if (saying_make(&s, e) || file_out_open(&out, o->output, e))
 		return -1;
 	return file_out_end(&out, say_all(&s, out.stream, to, short_of, e), e);

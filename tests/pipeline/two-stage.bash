@@ -15,7 +15,7 @@ two_stage() {
 	make -f "$ROOT/pipelines/two-stage.mk" V=1 SCENE="$WORK" SPLATS="$DATA/point_cloud.ply" CAMERAS="$DATA/sparse/0" \
 		IMAGES="$DATA/images" TEST_VIEWS="$(cat "$DATA/test-views")" SENTENCES="$DATA/sentences.jsonl" \
 		CANDIDATES="$DATA/candidates.jsonl" TRUTH="$DATA/truth.jsonl" BERT="$ROOT/tests/golden/bert" BIN="$BIN" SCALE=0.5 \
-		ITERATIONS=60 "$@"
+		ITERATIONS=60 TAUGHT=4 "$@"
 }
 
 # Fails where the command succeeds; a plain ! would let the test go on.
