@@ -136,14 +136,13 @@ $(BUILD)/bin/%: $(BUILD)/obj/cmd/%.o $(LIBRARY)
 	@mkdir -p $(@D)
 	$(LINK) -o $@ $^ $(LDLIBS)
 
-# How bash and zsh complete a tool's command line: made of its own table of options.
-$(BUILD)/completion/bash/%: $(BUILD)/bin/%
-	@mkdir -p $(@D)
-	@$< --completion=bash >$@.new && mv $@.new $@
+# How bash and zsh complete a tool's command line: made of its own --help.
+completion = @mkdir -p $(@D); $< --help | awk -v tool=$* -v shell=$(1) -f cmd/completion.awk >$@.new && mv $@.new $@
+$(BUILD)/completion/bash/%: $(BUILD)/bin/% cmd/completion.awk
+	$(call completion,bash)
 
-$(BUILD)/completion/zsh/_%: $(BUILD)/bin/%
-	@mkdir -p $(@D)
-	@$< --completion=zsh >$@.new && mv $@.new $@
+$(BUILD)/completion/zsh/_%: $(BUILD)/bin/% cmd/completion.awk
+	$(call completion,zsh)
 
 # All unit tests are one program, which runs the one that it is called by: linking it once is quick. The main of test_NAME.c is called main_of_test_NAME there.
 $(BUILD)/obj/tests/unit/test_%.o: tests/unit/test_%.c $(BUILD)/flags | $(BUILD)/headers

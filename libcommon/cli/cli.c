@@ -1,6 +1,5 @@
 #include "cli/cli.h"
 
-#include "cli/completion.h"
 #include "cli/signals.h"
 
 #include <errno.h>
@@ -107,26 +106,21 @@ static void print_help(const struct cli *c, const struct options *all)
 		print_row(all->rows[i]);
 }
 
-/* For the build: see cli/completion.h. */
-static void print_completion(const struct cli *c, const struct options *all, const char *shell)
+static void print_line(const struct cli *c, const char *before, const char *format, va_list ap)
 {
-	if (!strcmp(shell, "bash"))
-		completion_bash(c->tool, all->rows, all->n);
-	else if (!strcmp(shell, "zsh"))
-		completion_zsh(c->tool, all->rows, all->n);
-	else
-		cli_usage(c, "--completion: '%s' is not one of bash|zsh", shell);
+	fprintf(stderr, "%s: %s", c->tool->name, before);
+	vfprintf(stderr, format, ap);
+	fputc('\n', stderr);
 }
 
 _Noreturn void cli_usage(const struct cli *c, const char *format, ...)
 {
 	va_list ap;
 
-	fprintf(stderr, "%s: ", c->tool->name);
 	va_start(ap, format);
-	vfprintf(stderr, format, ap);
+	print_line(c, "", format, ap);
 	va_end(ap);
-	fprintf(stderr, "\nTry '%s --help'.\n", c->tool->name);
+	fprintf(stderr, "Try '%s --help'.\n", c->tool->name);
 	exit(ERR_USAGE);
 }
 
@@ -166,8 +160,7 @@ static void set_size(const struct cli *c, const struct cli_option *o, const char
 	}
 }
 
-/* Digits and `others` after an optional sign: no blanks, hexadecimal, nan or inf, all of which strtod takes.
- */
+/* Digits and `others` after an optional sign: no blanks, hexadecimal, nan or inf, as strtod takes. */
 static int is_number(const char *text, const char *others)
 {
 	text += *text == '-' || *text == '+';
@@ -230,13 +223,10 @@ static const struct cli_option *find_row(const struct options *all, const char *
 	return NULL;
 }
 
-static void check_help(
-	const struct cli *c, const struct options *all, int is_help, int is_version, const char *completion)
+static void check_help(const struct cli *c, const struct options *all, int is_help, int is_version)
 {
 	if (is_help)
 		print_help(c, all);
-	else if (completion)
-		print_completion(c, all, completion);
 	else if (is_version)
 		printf("%s (refersplat) %s\n", c->tool->name, VERSION);
 	else
@@ -252,8 +242,7 @@ static void parse_long(const struct cli *c, const struct options *all, char **ar
 	const char *name = argv[*i] + 2, *equals = strchr(name, '=');
 	size_t len = equals ? (size_t)(equals - name) : strlen(name);
 
-	check_help(c, all, !strcmp(name, "help"), !strcmp(name, "version"),
-		equals && !strncmp(name, "completion=", 11) ? equals + 1 : NULL);
+	check_help(c, all, !strcmp(name, "help"), !strcmp(name, "version"));
 	const struct cli_option *o = find_row(all, name, len, 0);
 	if (!o)
 		cli_usage(c, "unknown option '--%.*s'", (int)len, name);
@@ -273,7 +262,7 @@ static void parse_long(const struct cli *c, const struct options *all, char **ar
 static void parse_short(const struct cli *c, const struct options *all, char **argv, int argc, int *i)
 {
 	for (const char *p = argv[*i] + 1; *p; p++) {
-		check_help(c, all, *p == 'h', *p == 'V', NULL);
+		check_help(c, all, *p == 'h', *p == 'V');
 		const struct cli_option *o = find_row(all, "", 0, *p);
 		if (!o)
 			cli_usage(c, "unknown option '-%c'", *p);
@@ -333,20 +322,14 @@ int cli_fail(const struct cli *c, const struct err *e)
 
 static void print_note(const struct cli *c, int level, const char *format, va_list ap)
 {
-	if (c->verbose < level || (c->quiet && !level))
-		return;
-	fprintf(stderr, "%s: ", c->tool->name);
-	vfprintf(stderr, format, ap);
-	fputc('\n', stderr);
+	if (c->verbose >= level && (!c->quiet || level))
+		print_line(c, "", format, ap);
 }
 
 static void print_warning(const struct cli *c, const char *format, va_list ap)
 {
-	if (c->quiet)
-		return;
-	fprintf(stderr, "%s: warning: ", c->tool->name);
-	vfprintf(stderr, format, ap);
-	fputc('\n', stderr);
+	if (!c->quiet)
+		print_line(c, "warning: ", format, ap);
 }
 
 void cli_note(const struct cli *c, int level, const char *format, ...)

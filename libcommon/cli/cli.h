@@ -1,6 +1,5 @@
 /* Command lines: one option table a tool, from which parsing, range checks and --help are made. cmd/ only:
- * unlike the rest of the library these functions print, and cli_parse exits on --help, -V and usage errors.
- */
+ * unlike the rest of the library these functions print, and cli_parse exits on --help, -V and mistakes. */
 #pragma once
 
 #include "base/err.h"
