@@ -6,9 +6,6 @@
 #include "formats/cameras/colmap.h"
 #include "formats/scene/checkpoint.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static struct fitting_options options = {
 	.iterations = -1, .degree = 3, .scale = 1, .exposure = "auto", .checkpoint = 1000};
 

@@ -1,5 +1,4 @@
-/* pseudomask-select: an object's masks in the views, of the candidates that a detector found for its
- * sentences. */
+/* pseudomask-select: an object's masks in the views, of a detector's candidates for its sentences. */
 #include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/lift/pseudomasks.h"

@@ -78,8 +78,7 @@ static void prompt(void)
 		fputs("> ", stderr);
 }
 
-/* The next question of stdin, and those that wait behind it. Returns their number, 0 at the end, -1 with *e.
- */
+/* The next question of stdin, and those that wait behind it: how many, 0 at the end, -1 with *e. */
 static int take_questions(struct question to[AT_ONCE], struct questions *from, struct err *e)
 {
 	int n = 0, got;

@@ -3,8 +3,7 @@
  * Every function that can fail returns a status; refersplat_message then says why, in one line. Strings are
  * UTF-8. What a function hands out belongs to the handle and is good until the call that is named beside it,
  * refersplat_load or refersplat_free. A handle is for one thread at a time; several handles do not disturb
- * each other. librefersplat(3) has two programs that use it.
- */
+ * each other. librefersplat(3) has two programs that use it. */
 #ifndef REFERSPLAT_H
 #define REFERSPLAT_H
 

@@ -328,8 +328,7 @@ const char *asking_side(const double centre[3], const double other[3])
 
 const struct camera *asking_view(const struct asking *a, const char *name)
 {
-	for (size_t v = 0; v < a->scene.cameras.n; v++)
-		if (!strcmp(a->scene.cameras.views[v].name, name))
-			return &a->scene.cameras.views[v];
-	return a->given.n && !strcmp(a->given.views[0].name, name) ? a->given.views : NULL;
+	const struct camera *view = cameras_find(&a->scene.cameras, name);
+
+	return view ? view : cameras_find(&a->given, name);
 }

@@ -71,10 +71,7 @@ struct pointed {
 static struct pointed points_to(
 	const struct tokens *t, int i, const struct talk *talk, const char *name, const char *noun)
 {
-	static const char *const it[] = {"it", "him", "her", NULL};
-	static const char *const that[] = {"that", "this", NULL};
-	static const char *const those[] = {"they", "them", "those", "these", NULL};
-	const int is_one = tokens_is(t, i + 1, "one") || tokens_is(t, i + 1, "thing");
+	const int is_one = tokens_is(t, i + 1, "one|thing");
 	const int class = tokens_class(t, i + 1), before = i ? tokens_class(t, i - 1) : CLOSED_CONJUNCTION;
 	/* behind a noun, as of "everything that is red", a clause begins */
 	const int may_stand =
@@ -86,11 +83,11 @@ static struct pointed points_to(
 		return (struct pointed){.end = i + 1};
 	if (tokens_is(t, i, "its"))
 		return (struct pointed){"the ", name, "'s", i + 1};
-	if (tokens_is_any(t, i, it))
+	if (tokens_is(t, i, "it|him|her"))
 		return (struct pointed){"the ", name, "", i + 1};
-	if (tokens_is_any(t, i, that) && (is_one || is_end))
+	if (tokens_is(t, i, "that|this") && (is_one || is_end))
 		return (struct pointed){"the ", name, "", i + 1 + is_one};
-	if (*talk->things && tokens_is_any(t, i, those) &&
+	if (*talk->things && tokens_is(t, i, "they|them|those|these") &&
 		(is_end || class == CLOSED_NUMBER || tokens_is(t, i, "they")))
 		return (struct pointed){"", talk->things, "", i + 1 + (class == CLOSED_NUMBER)};
 	if (*noun && i && tokens_is(t, i, "one"))
@@ -101,16 +98,15 @@ static struct pointed points_to(
 /* "no, the other one", "not that one": asks for another thing than the last. */
 static int is_other(const struct tokens *t)
 {
-	static const char *const words[] = {"no", "nope", "not", "the", "that", "this", "it", "i", "mean",
-		"meant", "other", "one", "another", "thing", "wrong", "'s", "n't", "and", "what", "about",
-		NULL};
+	static const char words[] =
+		"no|nope|not|the|that|this|it|i|mean|meant|other|one|another|thing|wrong|'s|n't|and|what|"
+		"about";
 	int is = 0;
 
 	for (int i = 0; i < t->n; i++) {
-		if (!tokens_is_any(t, i, words))
+		if (!tokens_is(t, i, words))
 			return 0;
-		is |= tokens_is(t, i, "other") || tokens_is(t, i, "another") || tokens_is(t, i, "not") ||
-		      tokens_is(t, i, "n't");
+		is |= tokens_is(t, i, "other|another|not|n't");
 	}
 	return is;
 }
@@ -118,7 +114,7 @@ static int is_other(const struct tokens *t)
 /* Where the thing begins of "and the kettle?", "what about the kettle?"; 0: it is none of these. */
 static int find_again(const struct tokens *t)
 {
-	const int about = tokens_is(t, 1, "about") && (tokens_is(t, 0, "what") || tokens_is(t, 0, "how"));
+	const int about = tokens_is(t, 1, "about") && tokens_is(t, 0, "what|how");
 	const int from = about ? 2 : tokens_is(t, 0, "and");
 
 	return from && from < t->n && tokens_class(t, from) == CLOSED_DETERMINER ? from : 0;

@@ -51,8 +51,7 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
-/* Where the first line is a whole record, it says what all are; else the file may be one object of many
- * lines. */
+/* Where the first line is a whole record, it says what all are; else the file may be one object. */
 static int check_objects(struct check *c, const char *path, struct err *e)
 {
 	SCOPED_BY(jsonl_close) struct jsonl j = {0};
@@ -127,8 +126,7 @@ static int is_safetensors(const struct head *h)
 	return h->len >= 8 && !b[5] && !b[6] && !b[7] && (h->len == 8 || b[8] == '{');
 }
 
-/* A zip whose first file is NAME.npy: the local header has the length of its name at 26, and the name at 30.
- */
+/* A zip whose first file is NAME.npy: its name's length is at 26, the name at 30. */
 static int is_npz(const struct head *h)
 {
 	const size_t name = h->len >= 30 ? (size_t)h->bytes[26] + 256 * (size_t)h->bytes[27] : 0;

@@ -31,8 +31,7 @@ struct check {
 int check_file(struct check *c, const char *path, struct err *e);
 void check_free(struct check *c);
 
-/* Where stdin is a pipe, puts a temporary file with its content in its place, so that it can be read twice.
- */
+/* Where stdin is a pipe, puts a temporary file with its content in its place, to be read twice. */
 int check_spool(struct err *e);
 
 /* What cmd/check/check.h says of JSON Lines (formats/records/jsonl.md): each reads a whole file with its

@@ -1,5 +1,4 @@
-/* Features or labels of a scene's views, lifted onto its Gaussians: feature-lift. formats/scene/features.md.
- */
+/* Features or labels of a scene's views, lifted onto its Gaussians (formats/scene/features.md). */
 #pragma once
 
 #include "base/err.h"
@@ -17,9 +16,7 @@
 
 #include <stdint.h>
 
-/* Lifted features told by their first principal components: feature-lift --components.
- * formats/scene/features.md.
- */
+/* Lifted features told by their first principal components (formats/scene/features.md). */
 
 struct feature_components {
 	struct components of;
@@ -100,8 +97,7 @@ int feature_maps_features(const struct feature_maps *m, const struct feature_sou
 /* How many channels the view's features have; 0 for labels. Returns 0, or -1 with *e. */
 int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *channels, struct err *e);
 
-/* Opens s->table, and s->raw (height,width) gets the row of each pixel, of *rows. Returns 0, or -1 with *e.
- */
+/* Opens s->table, and s->raw (height,width) gets the row of each pixel, of *rows. 0, or -1 with *e. */
 int feature_tables_open(const struct feature_maps *m, size_t view, int height, int width,
 	struct feature_sources *s, size_t *rows, struct err *e);
 

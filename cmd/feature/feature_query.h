@@ -22,8 +22,7 @@ struct query_vectors {
 
 /* The vectors of the sentences in a file of text-encode, else of the one two-dimensional tensor of floats in
  * a safetensors file, or those of a .npy file, or of the array vectors, else arr_0, of a .npz file.
- * ERR_FORMAT where there are other than `channels` of them for each. Returns 0, or -1 with *e set and nothing
- * to free. */
+ * ERR_FORMAT where there are other than `channels` of them for each. 0, or -1 with *e and nothing to free. */
 int query_vectors_read(struct query_vectors *v, const char *path, size_t channels, struct err *e);
 /* The same of the sentences of a text that was read from a path. */
 int query_vectors_of_text(
@@ -86,8 +85,7 @@ int feature_query_make(struct feature_query *q, const struct feature_query_optio
 int feature_query_write(const struct feature_query *q, const char *path, struct err *e);
 void feature_query_free(struct feature_query *q);
 
-/* The two kinds of rules of cmd/feature/feature_query: by the cosines of vectors of texts, and by examples of
- * what is meant. */
+/* Rules by the cosines of vectors of texts, and rules by examples of what is meant. */
 
 /* Each reads what else its rules need, and fills q->marks. Returns 0, or -1 with *e set. */
 int query_by_vectors(struct feature_query *q, struct err *e);

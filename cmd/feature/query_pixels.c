@@ -182,8 +182,7 @@ static void by_relevancy(const struct pixels *p, struct pixel_map *m)
 		m->mask[i] = p->length[i] > 0 && (double)m->values[i] > threshold;
 }
 
-/* The record of a sentence in the view, where this level's largest number is above that of the levels before.
- */
+/* The record of a sentence in the view, where this level's largest number is above all before. */
 static int keep(const struct pixels *p, size_t sentence, const struct pixel_map *m, struct err *e)
 {
 	struct mask *to = &p->q->shown[p->view * p->q->count + sentence];

@@ -18,8 +18,7 @@
 static const char every[] = "every:";
 
 /* The camera file in a folder: the folder itself where it is a COLMAP model, else the first there is of
- * cameras.json, sparse/0, sparse, transforms.json. free() it. NULL with *e set (ERR_FORMAT) where there is
- * none. */
+ * cameras.json, sparse/0, sparse, transforms.json. free() it. NULL with *e (ERR_FORMAT) without. */
 static char *find_cameras_in(const char *dir, struct err *e)
 {
 	static const char *const places[] = {"cameras.json", "sparse/0", "sparse", "transforms.json"};
@@ -78,8 +77,7 @@ static int split_names(struct cameras *c, const char *test_views, struct err *e)
 	return bad;
 }
 
-/* What is beside SPLATS or, where 3DGS put it into point_cloud/iteration_N, in the folder of the trained
- * model. */
+/* What is beside SPLATS or, where 3DGS put it into point_cloud/iteration_N, in the model's folder. */
 static char *find_beside(const char *splats, struct err *e)
 {
 	SCOPED char *dir = file_dir(splats, e);
@@ -192,8 +190,7 @@ static int read_cameras(struct cameras *c, const struct import_options *o, const
 	return 0;
 }
 
-/* Into the frame that nerfstudio trained in, where it says how; else the cameras should be in that of the
- * splats. */
+/* Into the frame that nerfstudio trained in, where it says how; else the cameras should be in the splats'. */
 static int move(struct scene *s, const char *splats, const char *cameras, double *near,
 	const struct report *to, struct err *e)
 {
@@ -225,8 +222,7 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	struct err *e)
 {
 	*found = (struct import_found){.near = 1};
-	/* Cameras first: what is wrong with them, or with a name of a view, is said before the splats, which
-	 * take longer. */
+	/* Cameras first: what is wrong with them, or with a view's name, is said before the slow splats. */
 	if (read_cameras(&s->cameras, o, cameras, e) || import_split(&s->cameras, o->test_views, e) ||
 		anysplats_read(&s->splats, s->offset, report, o->splats, e))
 		return -1;

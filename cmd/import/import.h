@@ -61,8 +61,7 @@ struct import_options {
 /* The camera file; free() it. NULL with *e set, ERR_USAGE where none was named or found. */
 char *import_find_cameras(const struct import_options *o, struct err *e);
 
-/* Splits the views: NAME,... or every:N for testing; NULL leaves them as they are. Returns 0, or -1 with *e.
- */
+/* Splits the views: NAME,... or every:N for testing; NULL leaves them as they are. 0, or -1 with *e. */
 int import_split(struct cameras *c, const char *test_views, struct err *e);
 
 struct import_found {

@@ -70,9 +70,7 @@ static int compare(const struct scene *s, const struct camera *full, const uint8
 	return 0;
 }
 
-/* The photograph after so many quarter turns. One that cannot be read is none: 1, and r says why of the
- * first.
- */
+/* The photograph after so many quarter turns. One that cannot be read is none: 1, and r says why. */
 static int compare_file(struct resemblance *r, const struct scene *s, const struct camera *c,
 	const char *folder, int turns, double *correlation, const struct report *to, struct err *e)
 {

@@ -25,14 +25,6 @@ void warping_free(struct warping *w)
 	mem_free_all(w->map, w->from, w->to);
 }
 
-static const struct camera *find_view(const struct warping *w, const char *view)
-{
-	for (size_t i = 0; i < w->cameras.n; i++)
-		if (!strcmp(w->cameras.views[i].name, view))
-			return &w->cameras.views[i];
-	return NULL;
-}
-
 /* A mask that was undistorted already has the other's size. */
 static int check_shape(const struct warping *w, const struct camera *c, const struct rle *mask, struct err *e)
 {
@@ -89,7 +81,7 @@ static int refuse_view(const struct warping *w, const char *view, struct err *e)
 
 int warping_mask(struct warping *w, const char *view, struct rle *mask, struct err *e)
 {
-	const struct camera *c = w->way == WARP_NONE ? NULL : find_view(w, view);
+	const struct camera *c = w->way == WARP_NONE ? NULL : cameras_find(&w->cameras, view);
 	struct rle made;
 
 	if (w->way == WARP_NONE)

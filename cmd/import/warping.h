@@ -21,15 +21,13 @@ struct warping {
 	size_t map_room, from_room, to_room;
 };
 
-/* Reads a scene's cameras; nothing with WARP_NONE. Returns 0, or -1 with *e set; warping_free after either.
- */
+/* Reads a scene's cameras; nothing with WARP_NONE. 0, or -1 with *e; warping_free after either. */
 int warping_open(struct warping *w, enum warp way, const char *scene, struct err *e);
 void warping_free(struct warping *w);
 
 /* A mask of a view, or of its photograph, in place of a mask of the other; as it is where the view has no
- * lens. Masks may be smaller or larger than what they are of. Returns 0, or -1 with *e set: ERR_FORMAT,
- * without a file's name, where the scene has no such view, or the mask has not the shape of what it should be
- * of. */
+ * lens. Masks may be smaller or larger than what they are of. 0, or -1 with *e: ERR_FORMAT, without a file's
+ * name, where the scene has no such view, or the mask has not the shape of what it should be of. */
 int warping_mask(struct warping *w, const char *view, struct rle *mask, struct err *e);
 
 /* The photograph of a view in a scene's folder, as the view sees it after so many quarter turns clockwise:

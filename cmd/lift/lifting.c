@@ -290,8 +290,7 @@ static int find_fixed(struct lifting *l, int is_as_masked, struct err *e)
 	return 0;
 }
 
-/* Warns of sentences that say otherwise, and of what changed places: one line for all. Returns how many did.
- */
+/* Warns of sentences that say otherwise, and of what changed places: one line. How many did. */
 static size_t tell_names(const struct lifting *l, const struct report *to)
 {
 	const char *path = file_name(l->files->masks);

@@ -38,8 +38,7 @@ struct lifting {
 	struct disambiguated *found;	       /* (objects) what the sentences say of each */
 	char *is_shown;	       /* (text.n) by a mask, at the first training sentence of an object */
 	size_t objects, spare; /* spare regions are the objects after the others */
-	/* (objects + spare) of the sentences, in the order in which these first name them, then ""; not owned
-	 */
+	/* (objects + spare) of the sentences, in the order in which these name them, then ""; not owned */
 	const char **names;
 	char *is_there; /* (scene.cameras.n) the view has weights */
 	struct lift_objects lift;

@@ -1,5 +1,6 @@
 #include "cmd/lift/proposing.h"
 
+#include "base/compare.h"
 #include "base/each.h"
 #include "base/file.h"
 #include "base/mem.h"
@@ -8,7 +9,6 @@
 #include "formats/records/masks.h"
 #include "formats/scene/proposed.h"
 #include "formats/scene/weights.h"
-#include "geom/views.h"
 #include "mask/shrink.h"
 #include "splat/backproject.h"
 #include "splat/weights_pack.h"
@@ -178,9 +178,7 @@ static int order_weighed(const void *a, const void *b)
 {
 	const struct weighed *p = a, *q = b;
 
-	if (p->weight != q->weight)
-		return p->weight > q->weight ? -1 : 1;
-	return (p->gaussian > q->gaussian) - (p->gaussian < q->gaussian);
+	return p->weight != q->weight ? COMPARE(q->weight, p->weight) : COMPARE(p->gaussian, q->gaussian);
 }
 
 /* The Gaussians that have most of the weight, and which are neighbours. */

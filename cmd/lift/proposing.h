@@ -52,8 +52,7 @@ struct proposing {
 	int32_t count, *chosen;
 };
 
-/* Finds the regions and writes them; *p is zeroed before. Returns 0, or -1 with *e set; proposing_free after
- * either. */
+/* Finds the regions and writes them; *p is zeroed before. 0, or -1 with *e; proposing_free after either. */
 int proposing_write(
 	struct proposing *p, const struct proposing_options *options, const struct report *to, struct err *e);
 void proposing_free(struct proposing *p);

@@ -59,9 +59,7 @@ static int render(struct room *room, size_t pixels, const struct weighing_option
 	return prune_weights(&room->rendered, pixels, o->tolerance, least, room->dropped, e);
 }
 
-/* Views that show nothing are right where a camera looks away; all of them are a mistake, and their weights
- * go.
- */
+/* Views that show nothing are right where a camera looks away; all of them are a mistake: no weights stay. */
 static int check_covered(
 	const struct scene *s, const struct weighing_options *o, size_t views, double covered, struct err *e)
 {

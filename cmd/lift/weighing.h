@@ -21,8 +21,7 @@ struct weighing_options {
 };
 
 /* A scene that covers less of every view than this part of its pixels, more scene than background, is not
- * seen. The desk covers all of each; a thing alone that is a thirtieth of the view high and wide still covers
- * this. */
+ * seen. The desk covers all of each; a lone thing of a thirtieth of its width still does. */
 #define WEIGHING_COVERED 1e-3
 
 /* Writes a file for each view, and a note of it. ERR_FORMAT where no view is of the split. ERR_FORMAT also,

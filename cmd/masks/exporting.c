@@ -129,11 +129,9 @@ static const char *file_of(const char *image, const char *view, struct err *e)
 static int put_file_name(const struct exporting *x, struct jsontext *to, const char *view, struct err *e)
 {
 	char name[4096];
-	const char *image = NULL;
+	const struct camera *camera = cameras_find(&x->cameras, view);
+	const char *image = camera ? camera->image : NULL;
 
-	for (size_t v = 0; v < x->cameras.n && !image; v++)
-		if (!strcmp(x->cameras.views[v].name, view))
-			image = x->cameras.views[v].image;
 	if (image && !(image = file_of(image, view, e)))
 		return -1;
 	if (!image)

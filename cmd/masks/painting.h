@@ -1,5 +1,4 @@
-/* Photographs that a person painted over, a colour for each thing, or labelled, as mask records: mask-import.
- */
+/* Photographs that a person painted over, a colour for each thing, or labelled, as masks: mask-import. */
 #pragma once
 
 #include "base/err.h"
@@ -24,8 +23,7 @@ struct painting_names {
 	struct painting_name *items;
 };
 
-/* Errors: "path:LINE: reason". No colour and no name twice. Returns 0, or -1 with *e; free after
- * either. */
+/* Errors: "path:LINE: reason". No colour and no name twice. Returns 0, or -1 with *e; free after either. */
 int painting_names_read(struct painting_names *names, const char *path, struct err *e);
 void painting_names_free(struct painting_names *names);
 
@@ -51,8 +49,7 @@ typedef int mask_tree_put(void *to, const char *path, const char *view, const ch
  * classes only. Returns 0, or -1 with *e set: ERR_FORMAT where there is none. */
 int mask_tree_each(const char *dir, mask_tree_put *put, void *to, struct err *e);
 
-/* What the parts of cmd/masks/painting.h share: painting_colours.c has pictures of colours, painting.c the
- * rest. */
+/* What the parts of cmd/masks/painting.h share: painting_colours.c has pictures of colours. */
 
 /* The record of a mask, which is freed. Where it goes: the lens's photograph to the view. */
 int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e);

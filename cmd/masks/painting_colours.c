@@ -95,8 +95,7 @@ int painting_names_read(struct painting_names *names, const char *path, struct e
 	return got;
 }
 
-/* A warning where more of a picture than this is of a colour that is neither black nor white and has no name.
- */
+/* A warning where more of a picture than this is of a colour without a name, not black or white. */
 static const double unnamed_share = 0.001;
 
 /* The view of a picture: its file name without the ending, and without that of the photograph, which COLMAP's

@@ -1,6 +1,5 @@
 /* Outlines that a person drew go on beneath what lies on the thing: the smaller of two is on top, and the
- * larger does not have its pixels. Two names of one thing, and a part that its name says to be one, overlap.
- */
+ * larger does not have its pixels. Two names of one thing, and a named part, overlap. */
 #include "cmd/masks/painting.h"
 
 #include "base/mem.h"

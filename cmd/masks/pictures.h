@@ -1,6 +1,5 @@
 /* What refer-render draws for a person to look at: a picture for each view and sentence.
- * formats/images/pictures.md.
- */
+ * formats/images/pictures.md. */
 #pragma once
 
 #include "base/err.h"
@@ -27,6 +26,5 @@ struct picture {
 /* Writes DIR/VIEW/REF.png (.npy) of each kind, each appearing whole; makes the folders. */
 int pictures_put(const struct pictures *p, const struct picture *one, struct err *e);
 
-/* An overlay alone: the colours with the mask over them, and its words below. Returns 0, or -1 with *e set.
- */
+/* An overlay alone: the colours with the mask over them, and its words below. 0, or -1 with *e. */
 int picture_overlay(const char *path, const struct picture *one, struct err *e);

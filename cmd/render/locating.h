@@ -18,8 +18,7 @@ struct locating {
 	struct located *answers; /* (answers) */
 };
 
-/* up gets the direction that was taken for it. Returns 0, or -1 with *e set; locating_free is then in order.
- */
+/* up gets the direction that was taken for it. 0, or -1 with *e; locating_free is then in order. */
 int locating_find(struct locating *r, double up[3], struct err *e);
 
 /* A line for each sentence, formats/records/boxes.md; "-" is stdout. */

@@ -17,13 +17,10 @@ struct choosing {
 
 static struct viewpoint viewpoint_of(const struct choosing *c, size_t i)
 {
-	const struct cameras *all = &c->run->scene.cameras;
 	const char *view = c->text->views ? c->text->views[i] : "";
+	const struct camera *camera = cameras_find(&c->run->scene.cameras, view);
 
-	for (size_t v = 0; v < all->n && *view; v++)
-		if (!strcmp(all->views[v].name, view))
-			return (struct viewpoint){.kind = VIEWPOINT_CAMERA, .camera = &all->views[v]};
-	return (struct viewpoint){.kind = VIEWPOINT_USUAL};
+	return (struct viewpoint){.kind = camera ? VIEWPOINT_CAMERA : VIEWPOINT_USUAL, .camera = camera};
 }
 
 static void watch(void *data, size_t i, const struct meaning *m)
@@ -54,8 +51,7 @@ static int choose_all(struct choosing *c, struct err *e)
 	return choose(&of, sentences, t->n, CHOOSE_ALL, c->choices, c->probability, c->chosen, &watching, e);
 }
 
-/* The likeliest object that is chosen, or not chosen; objects where there is none. Takes it off the chosen.
- */
+/* The likeliest object that is chosen, or not chosen; objects where there is none. Takes it off. */
 static size_t take_best(const float *probability, char *chosen, int is_chosen, size_t objects)
 {
 	size_t best = objects;

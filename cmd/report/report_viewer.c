@@ -3,6 +3,7 @@
 #include "cmd/report/reporting.h"
 
 #include "base/base64.h"
+#include "base/compare.h"
 #include "base/embed.h"
 #include "base/file.h"
 #include "base/mem.h"
@@ -25,16 +26,14 @@ static int largest_first(const void *a, const void *b)
 {
 	const struct shown *x = a, *y = b;
 
-	if (x->size != y->size)
-		return x->size > y->size ? -1 : 1;
-	return (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
+	return x->size != y->size ? COMPARE(y->size, x->size) : COMPARE(x->gaussian, y->gaussian);
 }
 
 static int by_group(const void *a, const void *b)
 {
 	const struct shown *x = a, *y = b;
 
-	return x->group != y->group ? (x->group > y->group) - (x->group < y->group) : largest_first(a, b);
+	return x->group != y->group ? COMPARE(x->group, y->group) : largest_first(a, b);
 }
 
 /* groups (N): 1 + the object that has most of each Gaussian, where that is more than its cut; else 0. */

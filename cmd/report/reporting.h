@@ -1,5 +1,4 @@
-/* A run folder as one page of HTML: refer-report. The page's text is report_page.html; what it shows stands
- * in it as JSON. */
+/* A run folder as one page of HTML: the text is report_page.html; what it shows stands in it as JSON. */
 #pragma once
 
 #include "base/err.h"
@@ -114,9 +113,8 @@ void report_reasons_free(struct report_reason *reasons, size_t n);
 
 /* One object for each set: {"way","name","score":{...},"sentences":[...]}; "score" where there is truth. Of a
  * sentence: "ref", "text", "said" (the objects it means, where it says so), "answer", "runner_up", "there",
- * "sure", "iou", "pairs", "right" (null: not known), "refusal", "explained", and "views", a list of
- * [view, mask, truth or -1, iou or null], where mask and truth are places in the outlines. Returns 0, or -1
- * with *e set. */
+ * "sure", "iou", "pairs", "right" (null: not known), "refusal", "explained", and "views", a list of [view,
+ * mask, truth or -1, iou or null], where mask and truth are places in the outlines. 0, or -1 with *e. */
 int report_sentences(
 	struct jsontext *to, const struct report_run *r, struct report_outlines *o, struct err *e);
 
@@ -142,8 +140,7 @@ int report_splats_make(struct report_splats *s, const struct report_run *r, stru
 void report_splats_free(struct report_splats *s);
 
 /* What the viewer is told of them, as members of an object: "count", "groups", "camera", ...; `viewer` is the
- * folder of its modules, NULL where there is none. The objects have places (anymodel_place). Returns 0, or -1
- * with *e set. */
+ * folder of its modules, NULL: none. The objects have places (anymodel_place). 0, or -1 with *e. */
 int report_scene_put(struct jsontext *to, const struct report_run *r, const struct report_splats *s,
 	const char *viewer, struct err *e);
 

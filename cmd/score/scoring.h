@@ -1,5 +1,4 @@
-/* What miou-score reads, put together, and the scores that come of it: of masks, of answers, of boxes.
- * formats/records/scores.md. */
+/* What miou-score reads, and the scores of masks, answers and boxes (formats/records/scores.md). */
 #pragma once
 
 #include "base/err.h"

@@ -54,8 +54,7 @@ static int write_model(const struct synth_folder *f, struct err *e)
 	return bad;
 }
 
-/* Texts, names and refs are made of letters, digits, commas, hyphens and spaces: JSON needs no escapes for
- * them. */
+/* Texts, names and refs are made of letters, digits, commas, hyphens and spaces: no escapes in JSON. */
 static void put_sentences(FILE *out, const void *folder)
 {
 	const struct synth_folder *f = folder;

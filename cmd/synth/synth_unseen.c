@@ -1,5 +1,4 @@
-/* Texts, names and refs hold letters, digits, apostrophes, stops, hyphens and spaces: JSON needs no escapes
- * for them. */
+/* Texts, names and refs hold letters, digits and plain signs: no escapes in JSON. */
 #include "cmd/synth/benchmark.h"
 
 #include <string.h>

@@ -24,17 +24,14 @@ struct archive {
 	struct names index;	       /* of their names */
 };
 
-/* A zip that is in memory, which is the archive's from then on; released on failure. Returns 0, or -1 with
- * *e. */
+/* A zip that is in memory, which is the archive's from then on; released on failure. 0, or -1 with *e. */
 int archive_open_zip(struct archive *a, const char *name, struct file_map *map, struct err *e);
 
 /* The files of a folder, which must outlive the archive. */
 void archive_open_folder(struct archive *a, const char *folder);
 void archive_close(struct archive *a);
 
-/* A whole file: *data gets len bytes and a NUL after them; free() it. Names have no folders. Returns 0, or -1
- * with *e.
- */
+/* A whole file: *data gets len bytes and a NUL; free() it. Names have no folders. 0, or -1 with *e. */
 int archive_read(struct archive *a, const char *file, char **data, size_t *len, struct err *e);
 
 /* The same of one of the entries. */

@@ -55,6 +55,5 @@ void arrays_in_check_names(
 	struct arrays_in *in, char *const *strings, size_t n, int may_be_empty, const char *key);
 void arrays_in_check_unique(struct arrays_in *in, char *const *strings, size_t n, const char *key);
 
-/* Metadata 'pieces': string i has offsets[i+1] - offsets[i] pieces, with one space between and none around.
- */
+/* Metadata 'pieces': string i has offsets[i+1] - offsets[i] pieces, one space between and none around. */
 void arrays_in_check_pieces(struct arrays_in *in, char *const *pieces, const int64_t *offsets, size_t n);

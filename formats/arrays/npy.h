@@ -1,5 +1,4 @@
-/* NumPy .npy arrays, versions 1.0 and 2.0: any of numbers are read, float32 are written.
- * formats/arrays/npy.md. */
+/* NumPy .npy arrays, versions 1.0 and 2.0: any numbers are read, float32 written (formats/arrays/npy.md). */
 #pragma once
 
 #include "base/err.h"

@@ -1,5 +1,4 @@
-/* Matrices of numbers as tensors of a safetensors file: exact, or in fewer bits. formats/scene/model.md has
- * the bytes. */
+/* Matrices of numbers as tensors of a safetensors file: exact, or in fewer bits (formats/scene/model.md). */
 #pragma once
 
 #include "base/err.h"
@@ -26,8 +25,7 @@ enum st_dtype precision_dtype(enum precision p);
 enum precision_group { PRECISION_ROWS, PRECISION_COLUMNS };
 
 /* Puts x (rows,columns), which must last until the end, as tensors of that name: with u8 also NAME.low and
- * NAME.step, F32 [rows,1] or [1,columns]. ERR_CHECK where a number is not finite or too large for the
- * precision. */
+ * NAME.step, F32 [rows,1] or [1,columns]. ERR_CHECK where a number is not finite or too large. */
 void precision_put(struct arrays_out *out, const char *name, enum precision p, enum precision_group group,
 	size_t rows, size_t columns, const float *x);
 

@@ -1,5 +1,6 @@
 #include "formats/arrays/safetensors.h"
 
+#include "base/compare.h"
 #include "base/little.h"
 #include "base/mem.h"
 
@@ -96,9 +97,7 @@ static int by_offset(const void *a, const void *b)
 	const struct st_tensor *x = a, *y = b;
 	const unsigned char *px = x->data, *py = y->data;
 
-	if (px != py)
-		return px < py ? -1 : 1;
-	return (x->bytes > y->bytes) - (x->bytes < y->bytes);
+	return px != py ? COMPARE(px, py) : COMPARE(x->bytes, y->bytes);
 }
 
 /* No name stands for two tensors; then their names are looked up where they are in the order of the data. */

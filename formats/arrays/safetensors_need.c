@@ -1,5 +1,4 @@
-/* What readers of a format need of a safetensors file: numbers, tensors of a type and a shape, its own
- * format. */
+/* What readers of a format need of a safetensors file: numbers, tensors of a type and shape, its format. */
 #include "base/half.h"
 #include "base/little.h"
 #include "base/mem.h"

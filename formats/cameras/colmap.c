@@ -8,7 +8,6 @@
 #include "geom/views.h"
 
 #include <math.h>
-#include <stdio.h>
 
 /* A place in a binary file. */
 struct cursor {
@@ -264,8 +263,7 @@ static int add_point(struct colmap_points *p, size_t *room, const double place[3
 	return 0;
 }
 
-/* How many, and for each: id (u64), place (3 f64), colour (3 u8), error (f64), how many views (u64) with 8
- * bytes each. */
+/* How many, and for each: id (u64), place (3 f64), colour (3 u8), error (f64), views (u64), 8 bytes each. */
 enum { ENTRY = 8 + 24 + 3 + 8 + 8 };
 
 static int read_points_binary(struct colmap_points *p, const char *path, struct err *e)

@@ -1,5 +1,4 @@
-/* COLMAP sparse models: cameras and images, and points, binary or text.
- * formats/cameras/colmap.md. */
+/* COLMAP sparse models: cameras and images, and points, binary or text. formats/cameras/colmap.md. */
 #pragma once
 
 #include "base/err.h"
@@ -15,8 +14,7 @@ int colmap_is_model(const char *dir);
 
 /* Reads the model in dir (binary where both are there). Views are checked, named and sorted by views_finish;
  * `image` is the model's image name, all are SPLIT_TRAIN. A camera that distorts has its lens, and the
- * photograph's size and intrinsics: cameras_undistort makes it a pinhole. Returns 0, or -1 with *e and *c
- * zeroed. */
+ * photograph's size and intrinsics: cameras_undistort makes it a pinhole. 0, or -1 with *e and *c zeroed. */
 int colmap_read(struct cameras *c, const char *dir, struct err *e);
 
 /* Makes dir and writes cameras.txt (PINHOLE; views with the same intrinsics share a camera), images.txt

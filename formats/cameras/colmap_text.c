@@ -167,8 +167,7 @@ static void note_count(const char *comment, struct lines *in)
 	in->images_line = in->number;
 }
 
-/* An image's line is followed by one of its points, which may be empty; files of other programs leave it out.
- */
+/* An image's line is followed by one of its points, which may be empty; other programs leave it out. */
 static int read_images_text(struct cameras *c, const struct colmap_entries *all, struct lines *in,
 	const char *path, struct err *e)
 {

@@ -32,8 +32,7 @@ static int read_coefficient(const cJSON *frame, const cJSON *root, const char *k
 	return either_number(frame, root, key, value, where, e) < 0 ? -1 : 0;
 }
 
-/* nerfstudio's k4 of a perspective is no parameter of COLMAP's, and its k5 and k6 are only where FULL_OPENCV
- * is said. */
+/* nerfstudio's k4 of a perspective is no parameter of COLMAP's, k5 and k6 need FULL_OPENCV. */
 static int check_coefficients(int is_full, const double *k, const char *where, struct err *e)
 {
 	for (int i = 3; i < 6 && !is_full; i++)
@@ -92,8 +91,7 @@ static int read_lens(
 	return 0;
 }
 
-/* A focal length in pixels, or from the field of view in radians over `extent` pixels: 1, 0 where neither is
- * there. */
+/* A focal length in pixels, or from the field of view in radians over `extent` pixels: 1, 0 without. */
 static int read_focal(const cJSON *frame, const cJSON *root, const char *focal, const char *angle,
 	double extent, double *out, const char *where, struct err *e)
 {
@@ -200,8 +198,7 @@ static int is_named(const struct names *names, const char *image)
 	return names->n && bsearch(&image, names->items, names->n, sizeof *names->items, compare_string);
 }
 
-/* Test views are those listed as such, and where there is a list of training views also those that it lacks.
- */
+/* Test views are those listed as such, and those that a list of training views lacks. */
 static int read_splits(struct cameras *c, const cJSON *root, const char *path, struct err *e)
 {
 	struct names train = {0}, test = {0};
@@ -219,8 +216,7 @@ static int read_splits(struct cameras *c, const cJSON *root, const char *path, s
 	return -bad;
 }
 
-/* What frames may leave to the file, without copies: each frame looks these up, whatever else the file has.
- */
+/* What frames may leave to the file, without copies: each frame looks these up. */
 static cJSON *common_members(const cJSON *root, const char *path, struct err *e)
 {
 	static const char *const keys[] = {"camera_model", "is_fisheye", "k1", "k2", "k3", "k4", "k5", "k6",

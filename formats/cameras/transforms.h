@@ -1,5 +1,4 @@
-/* nerfstudio's transforms.json (and its ancestors'): cameras in OpenGL axes. formats/cameras/transforms.md.
- */
+/* nerfstudio's transforms.json (and its ancestors'): OpenGL axes. formats/cameras/transforms.md. */
 #pragma once
 
 #include "base/err.h"

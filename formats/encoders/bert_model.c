@@ -5,8 +5,6 @@
 #include "formats/encoders/pretrained.h"
 #include "formats/records/json.h"
 
-#include <stdio.h>
-
 static int read_activation(struct text_tower *b, const cJSON *config, const char *path, struct err *e)
 {
 	static const struct pretrained_activation known[] = {{"gelu", TRANSFORMER_GELU},

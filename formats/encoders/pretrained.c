@@ -7,8 +7,6 @@
 #include <dirent.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 int pretrained_int(
 	const cJSON *config, const char *key, int max, int usual, int *out, const char *path, struct err *e)

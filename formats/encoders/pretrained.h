@@ -40,8 +40,7 @@ int pretrained_open(struct safetensors *st, const char *dir, const char *first, 
 const struct st_tensor *pretrained_need(
 	const struct safetensors *st, const char *name, int rows, int columns, struct err *e);
 
-/* How a program names the tensors of a tower, after a prefix. Layers' begin with `layer`, their number and a
- * point. */
+/* How a program names the tensors of a tower, after a prefix. Layers' begin with `layer` and their number. */
 struct pretrained_names {
 	const char *prefix, *word, *position, *type, *layer, *norm,
 		*projection;	  /* type NULL: there is none */
@@ -59,8 +58,7 @@ struct pretrained {
 };
 
 /* The numbers of a tensor, all of them finite, into out (rows,columns), or (columns) where rows is 0. Where
- * out is NULL the tensor is only looked for, as by pretrained_need: so a reader looks for all of them before
- * it takes memory for them. */
+ * out is NULL the tensor is only looked for: so a reader looks for all of them before it takes memory. */
 int pretrained_load(struct pretrained *from, const char *name, float *out, int rows, int columns);
 
 /* All of a tower but the projection, in the same way: only looked for, before t has memory. */

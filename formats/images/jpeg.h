@@ -1,5 +1,4 @@
-/* JPEG images through libjpeg: formats/images/jpeg.md. formats/images/png.h has the function that tells PNG
- * from JPEG. */
+/* JPEG images through libjpeg: formats/images/jpeg.md. formats/images/png.h tells PNG from JPEG. */
 #pragma once
 
 #include "base/err.h"

@@ -12,8 +12,7 @@ static unsigned big(const uint8_t *bytes, int n)
 	return x;
 }
 
-/* Marker after marker, up to the one of a frame: a length of two bytes, the bits of a sample, height and
- * width. */
+/* Marker after marker, up to the one of a frame: length (2 bytes), the bits of a sample, height, width. */
 static enum picture_kind jpeg_size(FILE *in, int *height, int *width)
 {
 	uint8_t head[7];

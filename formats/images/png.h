@@ -1,5 +1,4 @@
-/* PNG images through libpng (formats/images/png.md), JPEG through libjpeg (formats/images/jpeg.md). Errors
- * name the file. */
+/* PNG images through libpng (formats/images/png.md), JPEG through libjpeg (formats/images/jpeg.md). */
 #pragma once
 
 #include "base/err.h"

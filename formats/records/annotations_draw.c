@@ -13,8 +13,7 @@
 
 enum { CIRCLE = 64 /* corners that stand for a circle */ };
 
-/* How far beside the picture a point may be that a person set at its edge: this share of its longer side, and
- * a pixel. */
+/* How far beside the picture a point may be that a person set at its edge: this share of its longer side. */
 static const double edge_share = 0.02;
 
 char *reading_view(const char *image, struct err *e)
@@ -142,8 +141,7 @@ int reading_points(struct reading *r, const cJSON *list, size_t *count, struct e
 	return at % 2 ? err_file(e, r->where, "a point is not two numbers") : 0;
 }
 
-/* The corners of a rectangle, or of what stands for a circle by its middle and a point on it, in place of two
- * points. */
+/* The corners of a rectangle, or of what stands for a circle by its middle and a point on it. */
 static int round_out(struct reading *r, int is_circle, size_t *count, struct err *e)
 {
 	const double x = r->points[0], y = r->points[1], u = r->points[2], v = r->points[3];

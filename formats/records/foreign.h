@@ -1,7 +1,6 @@
 /* Files of other programs that are given in place of ours: what they are, and the way out.
  * formats/records/foreign.md has all of them. Each function returns 0 where it does not know the file, or -1
- * with *e set (ERR_FORMAT).
- */
+ * with *e set (ERR_FORMAT). */
 #pragma once
 
 #include "base/err.h"

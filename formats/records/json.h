@@ -35,8 +35,7 @@ static inline cJSON *json_member(const cJSON *object, const char *key)
 }
 
 /* A number member, finite. Returns 1 and *value, 0 where it is absent or null (an error if `need`), -1 with
- * *e
- * ("WHERE: key 'k' ..."). */
+ * *e ("WHERE: key 'k' ..."). */
 int json_number(
 	const cJSON *object, const char *key, int need, double *value, const char *where, struct err *e);
 

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/jsontext.h"
 #include "base/mem.h"
+#include "base/names.h"
 #include "base/number.h"
 #include "base/textfile.h"
 #include "formats/records/foreign.h"
@@ -191,6 +192,21 @@ int jsonl_records(struct jsonl *j, size_t size,
 	if (got || !lines)
 		free(at);
 	return got;
+}
+
+int jsonl_check_refs(const struct jsonl *j, const void *records, size_t size, size_t offset, size_t n,
+	const long *lines, struct err *e)
+{
+	size_t twice, earlier;
+	const char *ref;
+
+	if (names_find_twice(records, size, offset, n, &twice, &earlier, e))
+		return -1;
+	if (twice == NAMES_NONE)
+		return 0;
+	memcpy(&ref, (const char *)records + twice * size + offset, sizeof ref);
+	return err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", j->path, lines[twice], ref,
+		lines[earlier]);
 }
 
 int jsonl_text(struct jsonl *j, struct err *e)

@@ -43,6 +43,10 @@ int jsonl_records(struct jsonl *j, size_t size,
 	int (*read)(const struct jsonl *j, const cJSON *object, void *record, struct err *e),
 	void (*release)(void *record), void **records, size_t *n, long **lines, struct err *e);
 
+/* ERR_FORMAT where two of such records have one ref, the `char *` at `offset`; lines: where they are. */
+int jsonl_check_refs(const struct jsonl *j, const void *records, size_t size, size_t offset, size_t n,
+	const long *lines, struct err *e);
+
 /* Sets ERR_FORMAT with "path:LINE: reason". Always returns -1. */
 int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
@@ -58,6 +62,5 @@ int jsonl_number(const struct jsonl *j, const cJSON *object, const char *key, do
 /* Writes `before`, then the text as a JSON string. */
 void jsonl_put_string(FILE *out, const char *before, const char *text);
 
-/* Writes `before`, n numbers with the fewest digits, whole ones without an exponent, as pixels are counted,
- * and "]". */
+/* Writes `before`, n numbers with the fewest digits, whole ones without an exponent, and "]". */
 void jsonl_put_numbers(FILE *out, const char *before, const double *x, int n);

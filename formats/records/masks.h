@@ -1,5 +1,4 @@
-/* Mask records (JSON Lines): candidates, pseudo masks, predictions and truth alike. formats/records/masks.md.
- */
+/* Mask records (JSON Lines): candidates, pseudo masks, predictions, truth. formats/records/masks.md. */
 #pragma once
 
 #include "base/err.h"
@@ -44,8 +43,7 @@ int masks_check_refs(const struct masks *set, const char *path, char *const *ref
 int masks_views(struct masks *set, long *lines, const char *path, const struct cameras *cameras,
 	size_t *views, const struct report *to, struct err *e);
 
-/* One line. Keys in the order view, ref, object, score, visible, peak, boxes, segmentation; absent ones left
- * out. */
+/* One line. Keys in the order view, ref, object, score, visible, peak, boxes, segmentation, as there are. */
 int masks_put(FILE *out, const struct mask *m, struct err *e);
 /* The same with a key "parts": objects of the parts' object, score, visible and segmentation. */
 int masks_put_parts(FILE *out, const struct mask *m, const struct mask *parts, size_t n, struct err *e);

@@ -1,8 +1,6 @@
 #include "formats/records/parses.h"
 
 #include "base/mem.h"
-#include "base/names.h"
-#include "formats/records/json.h"
 #include "formats/records/jsonl.h"
 #include "lang/colours.h"
 
@@ -268,17 +266,10 @@ int parses_read(struct parses *p, const char *path, struct err *e)
 {
 	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	SCOPED long *lines = NULL;
-	size_t twice, earlier;
+	const size_t size = sizeof *p->items, ref = offsetof(struct parse_relations, ref);
 
 	*p = (struct parses){0};
-	if (jsonl_open(&j, path, e))
-		return -1;
-	int bad = jsonl_records(
-			  &j, sizeof *p->items, read_one, release, (void **)&p->items, &p->n, &lines, e) ||
-		  names_find_twice(p->items, sizeof *p->items, offsetof(struct parse_relations, ref), p->n,
-			  &twice, &earlier, e);
-	if (!bad && twice != NAMES_NONE)
-		bad = err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path, lines[twice],
-			p->items[twice].ref, lines[earlier]);
-	return bad ? -1 : 0;
+	return -(jsonl_open(&j, path, e) ||
+		 jsonl_records(&j, size, read_one, release, (void **)&p->items, &p->n, &lines, e) ||
+		 jsonl_check_refs(&j, p->items, size, ref, p->n, lines, e));
 }

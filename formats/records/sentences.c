@@ -1,7 +1,6 @@
 #include "formats/records/sentences.h"
 
 #include "base/mem.h"
-#include "base/names.h"
 #include "base/utf8.h"
 #include "formats/records/json.h"
 #include "formats/records/jsonl.h"
@@ -120,18 +119,6 @@ static int read_one(const struct jsonl *j, const cJSON *object, void *record, st
 		 jsonl_name(j, object, "kind", NAME_DATA, 0, &s->kind, e));
 }
 
-static int check_unique(const struct sentences *s, const long *lines, const char *path, struct err *e)
-{
-	size_t twice, earlier;
-
-	if (names_find_twice(
-		    s->items, sizeof *s->items, offsetof(struct sentence, ref), s->n, &twice, &earlier, e))
-		return -1;
-	return twice == NAMES_NONE ? 0
-				   : err_set(e, ERR_FORMAT, "%s:%ld: ref '%s' is already on line %ld", path,
-					     lines[twice], s->items[twice].ref, lines[earlier]);
-}
-
 static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 {
 	SCOPED long *lines = NULL;
@@ -140,7 +127,10 @@ static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 
 	if (!bad && !s->n)
 		bad = err_file(e, j->path, "holds no sentences");
-	return bad || check_unique(s, lines, j->path, e) ? -1 : 0;
+	return bad || jsonl_check_refs(
+			      j, s->items, sizeof *s->items, offsetof(struct sentence, ref), s->n, lines, e)
+		       ? -1
+		       : 0;
 }
 
 static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)

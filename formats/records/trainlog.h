@@ -18,8 +18,7 @@ int trainlog_open(struct trainlog *l, const char *path, long iteration, struct e
 
 enum { TRAINLOG_EVERY = 100 };
 
-/* After each step: every TRAINLOG_EVERY steps a line of their mean losses, and the state's sum begins anew.
- */
+/* After each step: every TRAINLOG_EVERY steps a line of mean losses, and the state's sum begins anew. */
 int trainlog_step(struct trainlog *l, struct train_state *t, struct err *e);
 
 /* A line of what the held-out masks say. */

@@ -17,8 +17,7 @@ struct checkpoint_of {
 
 void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs);
 
-/* MODEL.checkpoint, where a training of MODEL leaves its state; free() it. NULL with *e when memory is out.
- */
+/* MODEL.checkpoint, where a training of MODEL leaves its state; free() it. NULL with *e. */
 char *checkpoint_path(const char *model, struct err *e);
 
 /* Writes the state whole, so that a kill at any time leaves the old or the new file. */

@@ -35,6 +35,5 @@ int model_take(struct model *m, const struct safetensors *st, struct err *e);
 int model_write(const struct model *m, const char *path, const char *options, long long seed, struct err *e);
 void model_free(struct model *m);
 
-/* Which row serves each Gaussian of the scene (scene_gaussians), whose means are means (scene_gaussians,3).
- */
+/* Which row serves each Gaussian of the scene (scene_gaussians), with means (scene_gaussians,3). */
 int model_rows(const struct model *m, const float *means, struct rows *rows, struct err *e);

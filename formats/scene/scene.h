@@ -1,5 +1,4 @@
-/* A scene folder: splats.safetensors (refer.splats) and cameras.json. formats/scene/scene.md has the tables.
- */
+/* A scene folder: splats.safetensors (refer.splats) and cameras.json (formats/scene/scene.md). */
 #pragma once
 
 #include "base/err.h"
@@ -24,6 +23,5 @@ void scene_free(struct scene *s);
 int scene_read_splats(struct scene *s, const char *path, struct err *e);
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);
 
-/* Makes dir and writes both files, each appearing whole. `options` goes into the metadata (a tool's own
- * choice). */
+/* Makes dir and writes both files, each appearing whole. `options` goes into the metadata. */
 int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e);

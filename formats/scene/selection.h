@@ -16,8 +16,7 @@ struct selection {
 	struct fingerprint scene;
 };
 
-/* The selection of a file that is open; of its own memory. Returns 0, or -1 with *e set and nothing to free.
- */
+/* The selection of a file that is open; of its own memory. 0, or -1 with *e and nothing to free. */
 int selection_take(struct selection *s, const struct safetensors *st, struct err *e);
 int selection_read(struct selection *s, const char *path, struct err *e);
 void selection_free(struct selection *s);

@@ -1,5 +1,4 @@
-/* text.safetensors (refer.text): a sentence's word vectors from the language encoder. formats/scene/text.md.
- */
+/* text.safetensors (refer.text): a sentence's word vectors from the encoder. formats/scene/text.md. */
 #pragma once
 
 #include "base/err.h"

@@ -5,8 +5,6 @@
 #include "formats/arrays/arrays_in.h"
 #include "splat/weights_pack.h"
 
-#include <stdio.h>
-
 /* A zstd block of 4 bytes may repeat one 131,072 times. */
 enum { VERSION_READ = 3, MAX_SIDE = 65536, LEVELS = 255, RATIO = 32768 };
 
@@ -40,8 +38,7 @@ static int all_within(const void *data, int64_t n, uint32_t limit)
 	return !(outside >> 31);
 }
 
-/* Floats from 0 to 1 have the bits of a whole number from 0 to that of 1; only -0 is another one that is
- * fine. */
+/* Floats from 0 to 1 have the bits of a whole number from 0 to that of 1; only -0 is another. */
 static int64_t find_not_share(const float *x, int64_t n)
 {
 	const float one = 1;

@@ -1,5 +1,5 @@
-/* weights/VIEW.safetensors (refer.weights): a view's blend weights, CSR over pixels.
- * formats/scene/weights.md. */
+/* weights/VIEW.safetensors (refer.weights): a view's blend weights, CSR over pixels
+ * (formats/scene/weights.md). */
 #pragma once
 
 #include "base/err.h"
@@ -34,8 +34,7 @@ struct weights {
 					    weight; else NULL */
 };
 
-/* Weights below half of 1/255 round to 0 as u8: prune_weights leaves them out, so that they count as dropped.
- */
+/* Weights below half of 1/255 round to 0 as u8: prune_weights leaves them out as dropped. */
 #define WEIGHTS_U8_LEAST (0.5 / 255)
 
 /* Maps and checks DIR/VIEW.safetensors: indptr rises from 0 to nnz, ids in [0,gaussians), weights finite in
@@ -61,7 +60,6 @@ struct view_weights weights_view(const struct weights *w);
 /* The same as rows or, of WEIGHTS_TILES, as tiles. */
 struct view_matrix weights_matrix(const struct weights *w);
 
-/* Writes DIR/VIEW.safetensors, with the weights in w's precision; u8 has whole numbers of 1/255; or as
- * they are packed. */
+/* Writes DIR/VIEW.safetensors, with the weights in w's precision (u8: whole numbers of 1/255) or packed. */
 int weights_write(
 	const struct weights *w, const char *dir, const char *view, const char *options, struct err *e);

@@ -79,8 +79,7 @@ int anysplats_write(const struct splats *s, const double offset[3], enum anyspla
 }
 
 /* What a format of splats does not keep. A place is rounded to a step: of .splat single precision, of .spz a
- * fixed point, of SOG a 65535th of the range of its logarithm. .spz has standard deviations of so many steps.
- */
+ * fixed point, of SOG a 65535th of the range of its logarithm. .spz has steps of standard deviations. */
 
 /* A step that is more of the largest standard deviation of half of the Gaussians, or so many that become
  * larger or smaller, shows in pictures. */

@@ -46,8 +46,7 @@ int glb_attribute(const struct glb *f, const cJSON *primitive, const char *name,
 double glb_value(const struct glb_values *v, size_t i, int k);
 
 /* Where a mesh is: its node's place and those of the nodes above. x becomes scale * rotation x + shift. The
- * identity where no node has it. ERR_FORMAT where several have, or a node does not only turn, scale evenly
- * and shift. */
+ * identity where no node has it. ERR_FORMAT where several have, or a node does more than that. */
 struct glb_place {
 	double scale, rotation[3][3], shift[3];
 };

@@ -52,8 +52,7 @@ static int find_layout(
 	return 0;
 }
 
-/* `chunks` is the offset of the element of that name, where there is one. Release with close_source in any
- * case. */
+/* `chunks` is the offset of the element of that name, where there is one. close_source in any case. */
 static int open_source(struct source *in, struct plyfile *f, const struct plyfile_element *vertex,
 	size_t chunks, struct err *e)
 {

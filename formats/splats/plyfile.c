@@ -110,8 +110,7 @@ static int read_property(struct plyfile *f, char *line, int number, struct err *
 		return -1;
 	el->properties[el->n++] = p;
 	el->has_list |= p.is_list;
-	/* In ascii the shortest value is a digit and the blank after it (the last one may lack that: see
-	 * check_rows). */
+	/* In ascii the shortest value is a digit and the blank after it (the last may lack that). */
 	el->min_bytes += f->encoding == PLY_ASCII ? 2 : types[p.is_list ? p.count_type : p.type].size;
 	return 0;
 }

@@ -41,8 +41,7 @@ struct plyfile {
 };
 
 /* Reads the header of a file that is in memory, which is f's from then on, and released on failure. `name`,
- * which must outlive f, is what messages say. Returns 0, or -1 with *e ("name:LINE: reason" for a fault in
- * the header). */
+ * which must outlive f, is what messages say. Returns 0, or -1 with *e ("name:LINE: reason"). */
 int plyfile_open(struct plyfile *f, const char *name, struct file_map *map, struct err *e);
 void plyfile_close(struct plyfile *f);
 

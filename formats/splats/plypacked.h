@@ -21,13 +21,11 @@ struct plypacked {
 int plypacked_is(const struct plyfile *f);
 
 /* Before the rows of `vertex` are read, with f->at at their beginning; `chunks` is where the rows of element
- * chunk begin. Checks the layout and reads the chunks. Returns 0, or -1 with *e; release with plypacked_close
- * in any case. */
+ * chunk begin. Checks the layout and reads the chunks. 0, or -1 with *e; plypacked_close in any case. */
 int plypacked_open(struct plypacked *p, const struct plyfile *f, const struct plyfile_element *vertex,
 	size_t chunks, struct err *e);
 void plypacked_close(struct plypacked *p);
 
-/* The next vertex as a row of the usual layout: x y z, f_dc, opacity, scale, rot (PLYPACKED_VALUES), then
- * f_rest. */
+/* The next vertex as a row of the usual layout: x y z, f_dc, opacity, scale, rot, then f_rest. */
 int plypacked_row(struct plypacked *p, struct plyfile *f, const struct plyfile_element *vertex, size_t row,
 	double *values, struct err *e);

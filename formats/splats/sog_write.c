@@ -1,6 +1,4 @@
-/* Writing .sog: numbers as pixels of lossless WebP images, in a zip that is not packed once more.
- * formats/splats/sog.md. */
-#include "base/little.h"
+/* Writing .sog: numbers as pixels of lossless WebP images, in a plain zip (formats/splats/sog.md). */
 #include "base/mem.h"
 #include "formats/arrays/archive.h"
 #include "formats/images/webp.h"

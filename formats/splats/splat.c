@@ -1,5 +1,6 @@
 #include "formats/splats/splat.h"
 
+#include "base/compare.h"
 #include "base/little.h"
 #include "base/mem.h"
 #include "splat/sh.h"
@@ -15,9 +16,7 @@ static int largest_first(const void *a, const void *b)
 {
 	const struct place *x = a, *y = b;
 
-	if (x->size != y->size)
-		return x->size > y->size ? -1 : 1;
-	return (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
+	return x->size != y->size ? COMPARE(y->size, x->size) : COMPARE(x->gaussian, y->gaussian);
 }
 
 static unsigned char to_byte(double x)

@@ -19,8 +19,7 @@ static void unpack_first_three(const unsigned char *p, double xyzw[4])
 	xyzw[3] = sqrt(fmax(0, rest));
 }
 
-/* The highest two bits say which of x y z w is the largest; the others, in order, have a sign and 9 bits
- * each. */
+/* The highest two bits say which of x y z w is the largest; the others have a sign and 9 bits each. */
 static void unpack_smallest_three(const unsigned char *p, double xyzw[4])
 {
 	const uint32_t word = (uint32_t)little_get(p, 4);
@@ -104,9 +103,8 @@ int spz_read_map(struct splats *s, double offset[3], struct rows_report *report,
 }
 
 /* Coordinates get as many fraction bits as leave room for the farthest mean; more than these say nothing, but
- * in scenes of a unit so large that most Gaussians are smaller than so many steps.
- * Harmonics are rounded to 5 bits of degree 1 and 4 of the others, as the format's own library does: noise
- * does not compress. */
+ * in scenes of a unit so large that most Gaussians are smaller than so many steps. Harmonics are rounded to 5
+ * bits of degree 1 and 4 of the others, as the format's own library does: noise does not compress. */
 enum {
 	FRACTION_USUAL = 16,
 	FRACTION_MOST = 24,

@@ -42,8 +42,7 @@ int spz_is(const struct file_map *map);
 int spz_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e);
 
-/* Writes version 2 or 3 (gzip) or 4 (zstd). Means are s->means + offset. "-" is stdout. Returns 0, or -1 with
- * *e set. */
+/* Writes version 2 or 3 (gzip) or 4 (zstd). Means are s->means + offset. "-" is stdout. 0, or -1 with *e. */
 int spz_write(const struct splats *s, const double offset[3], int version, const char *path, struct err *e);
 
 /* The fraction bits of a coordinate that spz_write chooses; -1 where the farthest has no room. */

@@ -7,15 +7,13 @@
 #include <zlib.h>
 #include <zstd.h>
 
-/* What a byte of a stream can become at most: of deflate, and a zstd block of 4 bytes that repeats one
- * 131,072 times. */
+/* What a byte of a stream can become at most: of deflate, and a zstd block of 4 bytes for 131,072. */
 enum { DEFLATE_RATIO = 1032, ZSTD_RATIO = 32768 };
 
 enum { GZIP_HEADER = 16, PLAIN_HEADER = 32, TABLE_ROW = 16 };
 enum { FLAG_ANTIALIASED = 1, FLAG_EXTENSIONS = 2 };
 
-/* Adobe's extension that says which way the axes point: 1 to 8, and 9 to 16 for those with y and z exchanged.
- */
+/* Adobe's extension that says which way the axes point: 1 to 8, 9 to 16 with y and z exchanged. */
 #define COORDINATES 0xadbe0003u
 enum { COORDINATES_DEFAULT = 4, COORDINATES_PLAIN = 8 };
 

@@ -43,7 +43,6 @@ struct answer_calls {
 }; /* both return 0, or -1 with *e set */
 
 /* Answers in n views. Each is rendered by a thread of its own, where there is memory for as many, as threads
- * in one view have less to share. Returns 0, or -1 with *e set by what went wrong in the first view where
- * anything did. */
+ * in one view have less to share. 0, or -1 with *e of the first view where anything went wrong. */
 int answer_all(const struct answer_question *q, const struct camera *cameras, size_t n,
 	const struct answer_calls *calls, struct err *e);

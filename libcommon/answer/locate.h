@@ -11,8 +11,7 @@ struct located {
 	double sure; /* in [0,1]: mean of sigmoid(response - lift) over its Gaussians, 0 for none */
 };
 
-/* all (a->answers), zeroed, gets each answer; extent_free each, also after a failure. Returns 0, or -1 with
- * *e set. */
+/* all (a->answers), zeroed, gets each answer; extent_free each, also after a failure. 0, or -1 with *e. */
 int locate_all(struct located *all, const struct responses *a, const struct splats *s, const double up[3],
 	struct err *e);
 

@@ -12,8 +12,7 @@ static int mirrored(int at, int n)
 	return at;
 }
 
-/* to (n): sums of `window` numbers around each of from (n), both with so many numbers from one to the next.
- */
+/* to (n): sums of `window` numbers around each of from (n), both so many numbers apart. */
 static void sum_line(const double *from, double *to, size_t step, int n, int window)
 {
 	double sum = 0;

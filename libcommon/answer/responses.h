@@ -75,7 +75,6 @@ size_t responses_gaussians(
 	const struct responses *a, size_t gaussians, size_t answer, int32_t *ids, float *responses);
 
 /* wholes (answers) gets the Gaussians of each answer, those with responses above 0 that are in sight of the
- * cameras (splat/visibility.h), as splats of their own without colour. splats_free each. On failure there are
- * none. */
+ * cameras (splat/visibility.h), as splats without colour. splats_free each. On failure there are none. */
 int responses_wholes(const struct responses *a, const struct splats *s, const struct cameras *cameras,
 	struct splats *wholes, struct err *e);

@@ -8,8 +8,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 int choose_without(const char *list, unsigned *parts, struct list_name *unknown)
 {

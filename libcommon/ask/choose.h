@@ -64,8 +64,7 @@ struct choice {
 	int is_by_purpose; /* what the thing is for told (CHOOSE_PURPOSE) */
 };
 
-/* What is known of a sentence once it is judged, for those who want to explain it; good until the call
- * returns. */
+/* What is known of a sentence once it is judged, to explain it; good until the call returns. */
 struct choose_watch {
 	void *data;
 	void (*each)(void *data, size_t i, const struct meaning *m);

@@ -6,8 +6,6 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { ROUNDS = 4 };
 static const double least = 0.003, naming = 0.1;
@@ -15,8 +13,7 @@ static const double least = 0.003, naming = 0.1;
  * 0.25, 0.5 and 1, on the 23 scenes that it was chosen on: an object more is wrong with 0, and with 1. */
 /* Sums of logs for each object of a circle that changes places; of a sentence for one that is named, of most
  * of two or more and of one alone. Of right sentences on the desk and four made scenes at most 2 of 4 are
- * above the first, and none above the second; where those of two objects are exchanged at least one of the
- * two is found. */
+ * above the first, and none above the second; of two objects' exchanged ones at least one is found. */
 static const double clear_gain = 0.7, contradicting = 1, plain = 3.5;
 static const double never = -1e9;
 static const size_t ANY = SIZE_MAX;
@@ -101,8 +98,7 @@ static void free_shares(struct lifted *l)
 	free(l->cut);
 }
 
-/* Of object o's sentences the one that means object k most plainly in place of it; ANY: any other that
- * is named. */
+/* Of object o's sentences the one that means object k most plainly in place of it; ANY: any other named. */
 static void explain(const struct lifted *l, size_t named, const float *probability, size_t o, size_t only,
 	struct disambiguated *to)
 {

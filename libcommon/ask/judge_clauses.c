@@ -21,8 +21,7 @@ static int compares_looks(const struct parse *p, const struct parse_clause *c)
 	       (compared_of(word, base) != PARSE_PLAIN || compared_look(word) != COMPARED_NONE);
 }
 
-/* How much an object looks as a word says, in units of what is told apart; 0 where such looks do not count.
- */
+/* How much an object looks as a word says, in units of what is told apart; 0 where looks do not count. */
 static double look_of(
 	const struct meaning *m, const struct arranged *o, enum compared_look look, const char *base)
 {
@@ -227,8 +226,7 @@ static void add_elsewhere(struct meaning *m, int anchor, const double *fit, doub
 }
 
 /* elsewhere (O): how far an object cannot be where a clause says, though the anchor is nothing here: it is an
- * anchor itself, or on the desk, and not on the sofa, or not beside what the anchor is beside: "on the sill
- * by the bed". */
+ * anchor itself, or on the desk, and not on the sofa, or not beside what the anchor is beside. */
 static void find_elsewhere(
 	struct meaning *m, const struct parse_clause *c, const double *fit, double *elsewhere)
 {

@@ -5,12 +5,10 @@
 
 #include <string.h>
 
-/* The colour that a colour goes on with, as "black and white" and "salmon pink" do, or -1; and the one
- * before. */
+/* The colour that a colour goes on with, as "black and white" and "salmon pink" do, or -1. */
 static int colour_after(const struct parse *p, int word)
 {
-	static const char *const plus[] = {"and", NULL};
-	const int next = parse_word_is(p, word + 1, plus) ? word + 2 : word + 1;
+	const int next = parse_word_is(p, word + 1, "and") ? word + 2 : word + 1;
 
 	return next < p->word_count && colour_word(p->words[next].lemma) >= 0 ? next : -1;
 }
@@ -28,7 +26,6 @@ enum coloured { OF_THING, OF_PART_PERHAPS, OF_PART };
 
 static enum coloured coloured_by(const struct parse *p, const struct parse_phrase *f, int word)
 {
-	static const char *const with[] = {"with", "w", "having", NULL};
 	enum coloured of = OF_THING;
 
 	for (int i = word - 1; i >= 0; i--) {
@@ -36,14 +33,13 @@ static enum coloured coloured_by(const struct parse *p, const struct parse_phras
 			if (of != OF_THING && colour_word(p->words[i].lemma) >= 0)
 				return of;
 		} else if (of != OF_PART) {
-			of = meaning_word_is(&p->words[i], with) ? OF_PART : OF_PART_PERHAPS;
+			of = meaning_word_is(&p->words[i], "with|w|having") ? OF_PART : OF_PART_PERHAPS;
 		}
 	}
 	return OF_THING;
 }
 
-/* "With a yellow scarf": a colour that nothing here has, or is said to have, speaks against its being there.
- */
+/* "With a yellow scarf": a colour that nothing here has or is said to have. */
 void judge_part_colours(struct meaning *m, int phrase, const struct parse_clause *c, double *value)
 {
 	const struct parse *p = m->sentence->parse;

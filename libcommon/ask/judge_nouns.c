@@ -12,8 +12,7 @@
 /* "the red one", "the other two": a thing of the kind that was spoken of. */
 static int is_elliptic(const struct parse *p, const struct parse_phrase *f)
 {
-	static const char *const again[] = {
-		"one", "ones", "other", "others", "another", "two", "three", "those", NULL};
+	static const char again[] = "one|ones|other|others|another|two|three|those";
 
 	for (int w = 1; w < p->word_count && !f->noun.n; w++) /* "the striped one" */
 		if (p->words[w - 1].span.end == f->span.end && meaning_word_is(&p->words[w], again))
@@ -24,10 +23,9 @@ static int is_elliptic(const struct parse *p, const struct parse_phrase *f)
 /* Whether a phrase, or a word like "one" where the phrase has no words, comes after some words. */
 static int is_after(const struct parse *p, const struct parse_phrase *f, struct parse_span words)
 {
-	static const char *const again[] = {"one", "ones", "other", "others", "another", NULL};
-
 	for (int w = 0; w < p->word_count && f->span.begin == f->span.end; w++)
-		if (p->words[w].span.begin >= words.end && meaning_word_is(&p->words[w], again))
+		if (p->words[w].span.begin >= words.end &&
+			meaning_word_is(&p->words[w], "one|ones|other|others|another"))
 			return 1;
 	return words.begin < f->span.begin;
 }
@@ -43,8 +41,7 @@ static int kind_before(const struct parse *p, const struct parse_phrase *target)
 	return -1;
 }
 
-/* Whether a word that nothing is called by is said of something: "striped" of "neither purple nor striped".
- */
+/* Whether a word that nothing is called by is said of something: "neither purple nor striped". */
 static int is_said_of_something(struct meaning *m, int word, double *match)
 {
 	if (!wordnet_is_adjective(m->sentence->parse->words[word].lemma))
@@ -53,8 +50,7 @@ static int is_said_of_something(struct meaning *m, int word, double *match)
 	return largest(match, objects_of(m)) > ATTRIBUTE_SAID;
 }
 
-/* "The white gadget": a thing whose name is not said, and few of what is called so somewhere is called so
- * here. */
+/* "The white gadget": a thing whose name is not said, and few things called so are called so here. */
 static int is_vague(const struct parse_word *w)
 {
 	return kinds_listed("vague", w->text) || kinds_listed("vague", w->lemma);
@@ -64,16 +60,13 @@ static int is_vague(const struct parse_word *w)
  * and "a sheet of paper" are names. */
 static int is_shape(const struct parse *p, const struct parse_phrase *f, int head)
 {
-	static const char *const of[] = {"of", NULL};
-
 	return f->noun.n == 1 && kinds_listed("shape", p->words[head].lemma) &&
-	       !parse_word_is(p, head + 1, of);
+	       !parse_word_is(p, head + 1, "of");
 }
 
 /* "Something orange" is any thing of that colour; "the orange" is a fruit. */
 static int is_colour(const struct parse *p, int head)
 {
-	static const char *const articles[] = {"a", "an", "any", "my", "the", "your", NULL};
 	struct things_rows rows;
 	char two[2 * TOKEN_LENGTH];
 
@@ -84,7 +77,7 @@ static int is_colour(const struct parse *p, int head)
 	if (rows.n)
 		return 0;
 	things_find(&rows, p->words[head].lemma);
-	return !rows.n || !parse_word_is(p, head - 1, articles);
+	return !rows.n || !parse_word_is(p, head - 1, "a|an|any|my|the|your");
 }
 
 /* "Black puffer coat": where nothing is called by what was taken for the noun, the noun after it. match (O)

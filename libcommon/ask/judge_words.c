@@ -60,8 +60,7 @@ void judge_attribute(struct meaning *m, int phrase, int word, double least)
 	judge_surface(m, phrase, word);
 }
 
-/* A part that is, or fits, no object, but that training sentences may tell of: "with a handle", "on the
- * shelf". */
+/* A part that is, or fits, no object, but that training sentences may tell of: "with a handle". */
 void judge_said(struct meaning *m, const struct parse_clause *c, double *said)
 {
 	const struct parse *p = m->sentence->parse;

@@ -1,11 +1,10 @@
 #include "ask/meaning.h"
 
+#include "base/list.h"
 #include "base/mem.h"
 #include "lang/closed.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 void meaning_free(struct meaning *m)
 {
@@ -95,19 +94,16 @@ int meaning_is_empty(const struct meaning *m, int phrase)
 	return 1;
 }
 
-int meaning_word_is(const struct parse_word *w, const char *const *list)
+int meaning_word_is(const struct parse_word *w, const char *words)
 {
-	for (; *list; list++)
-		if (!strcmp(w->text, *list) || !strcmp(w->lemma, *list))
-			return 1;
-	return 0;
+	return list_has(words, w->text) || list_has(words, w->lemma);
 }
 
 int meaning_head_of(const struct parse *p, const struct parse_phrase *f)
 {
-	static const char *const generic[] = {"thing", "object", "item", "one", "something", "anything",
-		"everything", "stuff", "what", "whatever", "which", "who", "whoever", "thingy", "other",
-		"another", "piece", NULL};
+	static const char generic[] =
+		"thing|object|item|one|something|anything|everything|stuff|what|whatever|which|who|"
+		"whoever|thingy|other|another|piece";
 	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
 
 	return head >= 0 && (meaning_word_is(&p->words[head], generic) ||
@@ -116,27 +112,25 @@ int meaning_head_of(const struct parse *p, const struct parse_phrase *f)
 		       : head;
 }
 
-int meaning_has_word(const struct parse *p, const struct parse_phrase *f, const char *const *list)
+int meaning_has_word(const struct parse *p, const struct parse_phrase *f, const char *words)
 {
 	for (int w = 0; w < p->word_count; w++)
 		if (p->words[w].span.begin >= f->span.begin && p->words[w].span.end <= f->span.end &&
-			meaning_word_is(&p->words[w], list))
+			meaning_word_is(&p->words[w], words))
 			return 1;
 	return 0;
 }
 
 int meaning_is_other(const struct parse *p, const struct parse_phrase *f)
 {
-	static const char *const other[] = {"other", "others", "else", "rest", "remaining", NULL};
-
-	return meaning_has_word(p, f, other);
+	return meaning_has_word(p, f, "other|others|else|rest|remaining");
 }
 
 int meaning_is_scene(const struct meaning *m, int phrase)
 {
-	static const char *const places[] = {"table", "tabletop", "desk", "desktop", "countertop", "picture",
-		"photo", "image", "scene", "room", "shot", "frame", "view", "floor", "ground", "surface",
-		NULL};
+	static const char places[] =
+		"table|tabletop|desk|desktop|countertop|picture|photo|image|scene|room|shot|frame|view|"
+		"floor|ground|surface";
 	const struct parse *p = m->sentence->parse;
 	const int head = meaning_head_of(p, &p->phrases[phrase]);
 

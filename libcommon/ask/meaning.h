@@ -1,5 +1,4 @@
-/* What was judged of a sentence among a scene's objects: how well each object fits each of its phrases, part
- * by part. */
+/* What was judged of a sentence among a scene's objects: how well each object fits each phrase, by parts. */
 #pragma once
 
 #include "places/arrangement.h"
@@ -79,11 +78,9 @@ void meaning_take_part(struct meaning *m);
 /* Whether nothing at all was said of what a phrase means: "where is it?" */
 int meaning_is_empty(const struct meaning *m, int phrase);
 
-/* Whether a word, or its lemma, is in a list that ends in NULL. */
-int meaning_word_is(const struct parse_word *w, const char *const *list);
-
-/* Whether a word of the phrase is. */
-int meaning_has_word(const struct parse *p, const struct parse_phrase *f, const char *const *list);
+/* Whether a word, or its lemma, is one of "this|that"; whether a word of the phrase is. */
+int meaning_word_is(const struct parse_word *w, const char *words);
+int meaning_has_word(const struct parse *p, const struct parse_phrase *f, const char *words);
 
 /* The word that names the kind of thing, or -1: "something", "the red one". */
 int meaning_head_of(const struct parse *p, const struct parse_phrase *f);

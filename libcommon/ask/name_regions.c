@@ -5,7 +5,6 @@
 #include "lang/naming.h"
 
 #include <math.h>
-#include <string.h>
 
 /* Found on the desk's training views and sentences, and on made scenes of seed 5. */
 static const double least_fit = 0.03, least_score = 0.02, least_vote = 0.02;

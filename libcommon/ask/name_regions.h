@@ -6,8 +6,7 @@
  * of how likely the region is anything at all; and of how far a detector found it to be what sentences call
  * the thing. The thing whose best region is clearest gets it first, and is an anchor for the others; then
  * things change their regions, the largest gain first, until nothing is better. At last each gets the
- * likeliest thing of the regions in its own and around it. Regions that are nearly the same are of one thing
- * only. */
+ * likeliest thing of the regions in its own and around it. Nearly the same regions are of one thing. */
 #pragma once
 
 #include "base/err.h"

@@ -1,7 +1,6 @@
 #include "ask/usage.h"
 
 #include "ask/constants.h"
-#include "ask/meaning.h"
 #include "base/logistic.h"
 #include "lang/closed.h"
 #include "lang/purpose.h"
@@ -24,8 +23,7 @@ static int is_before_generic(const struct parse *p, int word)
 	return 0;
 }
 
-/* Whether a part holds whatever the sentence is about: a colour, a size, a place by something that is known.
- */
+/* Whether a part holds whatever the sentence is about: a colour, a size, a place by something known. */
 static int is_kept(const struct meaning *m, const struct meaning_part *part)
 {
 	const struct parse *p = m->sentence->parse;
@@ -48,9 +46,7 @@ static int is_kept(const struct meaning *m, const struct meaning_part *part)
 	return known;
 }
 
-/* use_words marks the words that tell of the use, as a sentence; counts, of these, those that are not of
- * grammar.
- */
+/* use_words marks the words that tell of the use, as a sentence; counts, of these, those not of grammar. */
 static void mark_words(const struct meaning *m, char *use_words, char *counts)
 {
 	const struct parse *p = m->sentence->parse;
@@ -83,12 +79,11 @@ static void add_parts(const struct meaning *m, double *parts)
 /* Whether a thing is asked for by its name: one that is here, or "is there a spoon?". */
 static int is_by_name(const struct meaning *m, int head)
 {
-	static const char *const there[] = {"there", "is", "'s", NULL};
 	const struct parse *p = m->sentence->parse;
 
 	return head >= 0 && (m->known[0] >= PURPOSE_NOUN ||
 				    (head > 1 && closed_is(p->words[head - 1].text, CLOSED_DETERMINER) &&
-					    parse_word_is(p, head - 2, there)));
+					    parse_word_is(p, head - 2, "there|is|'s")));
 }
 
 /* Whether a word is of what the target is said to be near, under ... */
@@ -107,8 +102,7 @@ static int is_of_anchor(const struct parse *p, int word)
 	return 0;
 }
 
-/* Whether the words that count say more than a name and a place: "where is the teddy bear by the window?"
- * does not. */
+/* Whether the words that count say more than a name and a place: "where is the teddy bear?" does not. */
 static int says_more_than_name(const struct parse *p, const char *counts)
 {
 	const struct parse_list *noun = &p->phrases[0].noun;

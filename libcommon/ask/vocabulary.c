@@ -3,13 +3,10 @@
 #include "ask/constants.h"
 #include "base/mem.h"
 #include "lang/closed.h"
-#include "lang/colours.h"
 #include "lang/finish.h"
 #include "lang/kinds.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 void vocabulary_free(struct vocabulary *v)
 {

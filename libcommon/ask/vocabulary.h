@@ -1,5 +1,4 @@
-/* The words by which training sentences call each lifted object and say where it is, and how other words
- * match them. */
+/* The words by which training sentences call each lifted object and say where it is; how words match them. */
 #pragma once
 
 #include "places/arrangement.h"
@@ -84,8 +83,7 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 void vocabulary_free(struct vocabulary *v);
 
 /* match (O): how likely an object is called by word w of a sentence, in [0,1]: 1 where its name or a training
- * sentence calls it so; what WordNet and lang/kinds.h think of the two nouns; what the cosine of their
- * vectors is worth. */
+ * sentence calls it so; what WordNet and lang/kinds.h think of the two nouns; what their cosine is worth. */
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* Whether an object is, by its name, a piece of furniture. */
@@ -96,14 +94,12 @@ int vocabulary_is_furniture(const struct vocabulary *v, size_t object);
 void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
 
 /* match (O) in [0,1]: that a training sentence says that the object has what word w names, a screen of the
- * laptop; with a place also where it is in that relation to it, on the shelf, and less in another.
- * PARSE_OTHER: no place. */
+ * laptop; with a place also where it is so, on the shelf, and less in another. PARSE_OTHER: no place. */
 void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
 	enum parse_relation place, double *match);
 
 /* match (O): the cosine of the mean of a sentence's words that count (a char of each word) with the nouns
- * that training sentences call an object by, 0 where there is none: what the sentence is about, whatever it
- * says of that. */
+ * that training sentences call an object by, 0 where there is none: what the sentence is about. */
 void vocabulary_about(
 	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match);
 

@@ -13,9 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Whether a word is a word of a name: 2 the last one that is no number, or the name without its gaps, 1
- * another.
- */
+/* Whether a word is a word of a name: 2 its last (no number) or all without gaps, 1 another. */
 static int is_in_name(const char *word, const char *name)
 {
 	const size_t length = strlen(word);
@@ -134,8 +132,7 @@ static int is_sort_of(
 }
 
 /* A kind that has a name of two words is another thing than what its second word alone names, a tea bag in a
- * room with a red bag, unless it is a sort of that, as a water bottle is of a bottle that nothing is said of.
- */
+ * room with a red bag, unless it is a sort of that, as a water bottle is. */
 static void judge_compound(struct vocabulary *v, const struct parse *p, int w, double *match)
 {
 	char lemma[80];

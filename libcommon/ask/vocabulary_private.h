@@ -1,5 +1,4 @@
-/* What the two halves of ask/vocabulary.h share: vocabulary.c makes it, vocabulary_match.c and
- * vocabulary_uses.c ask it. */
+/* What vocabulary.c makes and vocabulary_match.c and vocabulary_uses.c ask. */
 #pragma once
 
 #include "ask/vocabulary.h"

@@ -5,8 +5,6 @@
 #include "base/mem.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 void vocabulary_about(
 	struct vocabulary *v, const struct vocabulary_sentence *s, const char *counts, double *match)

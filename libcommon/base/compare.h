@@ -1,36 +1,37 @@
-/* What qsort and bsearch order by: numbers that rise, and strings (of an array of pointers) by their bytes.
- */
+/* What qsort and bsearch order by: numbers that rise, and strings by their bytes. */
 #pragma once
 
 #include <stdint.h>
 #include <string.h>
 
+#define COMPARE(x, y) (((x) > (y)) - ((x) < (y)))
+
 static inline int compare_float(const void *a, const void *b)
 {
 	const float x = *(const float *)a, y = *(const float *)b;
 
-	return (x > y) - (x < y);
+	return COMPARE(x, y);
 }
 
 static inline int compare_double(const void *a, const void *b)
 {
 	const double x = *(const double *)a, y = *(const double *)b;
 
-	return (x > y) - (x < y);
+	return COMPARE(x, y);
 }
 
 static inline int compare_u32(const void *a, const void *b)
 {
 	const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
 
-	return (x > y) - (x < y);
+	return COMPARE(x, y);
 }
 
 static inline int compare_u64(const void *a, const void *b)
 {
 	const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
 
-	return (x > y) - (x < y);
+	return COMPARE(x, y);
 }
 
 static inline int compare_string(const void *a, const void *b)

@@ -268,8 +268,7 @@ int file_out_commit(struct file_out *out, struct err *e)
 		find_why(out);
 		bad = err_errno(e, "%s", name);
 	}
-	/* Before it is closed: its lock, without which another run takes it for a leftover, ends with that.
-	 */
+	/* Before it is closed: its lock ends with that, and it would be a leftover. */
 	if (out->temporary && !bad && temporary_rename(out->temporary, out->target))
 		bad = err_errno(e, "%s", name);
 	temporary_end(out->temporary);

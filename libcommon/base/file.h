@@ -5,8 +5,7 @@
 
 #include <stdio.h>
 
-/* Reads a whole file or pipe. *data gets len bytes and a NUL after them; free() it. Returns 0, or -1 with *e.
- */
+/* Reads a whole file or pipe. *data gets len bytes and a NUL after them; free() it. 0, or -1 with *e. */
 int file_read(const char *path, char **data, size_t *len, struct err *e);
 
 /* A read-only map of a regular file (or a read copy of a pipe). Release with file_unmap. */
@@ -47,8 +46,7 @@ int file_out_open(struct file_out *out, const char *path, struct err *e);
 int file_out_commit(struct file_out *out, struct err *e); /* closes in any case */
 void file_out_abort(struct file_out *out);		  /* harmless after commit, and on a zeroed struct */
 
-/* Commits, or where writing was bad (*e says why, but that the device failed is said here) aborts. Returns 0,
- * or -1 with *e set. */
+/* Commits, or where writing was bad (*e says why, but for the device) aborts. 0, or -1 with *e. */
 int file_out_end(struct file_out *out, int bad, struct err *e);
 
 /* Opens, writes by `put`, in which nothing but the device can fail, and ends. */
@@ -58,8 +56,7 @@ int file_out_put(const char *path, void (*put)(FILE *out, const void *what), con
  * ends. Threads that then open or end an output wait for that. */
 void file_out_remove_all(void);
 
-/* Fails where an output of that name could not be opened: to be found out before long work. Leaves nothing
- * behind. */
+/* Fails where an output of that name could not be opened: before long work. Leaves nothing behind. */
 int file_out_probe(const char *path, struct err *e);
 
 /* The same for the time that long work takes: what is left of it is file_out_abort's. A second run into one

@@ -10,8 +10,7 @@ struct jsontext {
 	int has_item; /* the list or object that is open has an item already */
 };
 
-/* The key of a value is NULL in a list and at the top. An object, '{', or a list, '['; and its end, '}' or
- * ']'. */
+/* The key of a value is NULL in a list and at the top. An object, '{', or a list, '['; and its end. */
 void jsontext_open(struct jsontext *j, const char *key, char bracket);
 void jsontext_close(struct jsontext *j, char bracket);
 

@@ -11,6 +11,20 @@ int list_next(const char **rest, struct list_name *name)
 	return 1;
 }
 
+int list_has(const char *words, const char *word)
+{
+	const size_t length = strlen(word);
+
+	for (;; words++) {
+		const size_t n = strcspn(words, "|");
+		if (n == length && !memcmp(words, word, n))
+			return 1;
+		words += n;
+		if (!*words)
+			return 0;
+	}
+}
+
 int list_name_is(const struct list_name *name, const char *text)
 {
 	return !strncmp(name->text, text, name->length) && !text[name->length];

@@ -1,4 +1,4 @@
-/* Comma-separated names, as command lines have them. */
+/* Comma-separated names, as command lines have them; words of a list, as the program has them. */
 #pragma once
 
 #include <stddef.h>
@@ -8,9 +8,11 @@ struct list_name {
 	size_t length;
 };
 
-/* The next name of *rest, which moves on: 1, or 0 where *rest is NULL, as it is after the last. "" is one
- * empty name. */
+/* The next name of *rest, which moves on: 1, or 0 where *rest is NULL, as after the last. "" is one name. */
 int list_next(const char **rest, struct list_name *name);
 
 /* 1 where the name is this text. */
 int list_name_is(const struct list_name *name, const char *text);
+
+/* 1 where a word is one of "this|that|those". */
+int list_has(const char *words, const char *word);

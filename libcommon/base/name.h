@@ -1,6 +1,5 @@
 /* Names of views, refs and objects. A view's name is also a file name (VIEW.safetensors, VIEW/REF.png), so it
- * is checked as one where it is read. Refs and objects are data, and are escaped where they become file
- * names. */
+ * is checked as one where it is read. Refs and objects are escaped in file names. */
 #pragma once
 
 #include "base/err.h"
@@ -18,8 +17,7 @@ enum { NAME_FAULT = 64 };
 const char *name_fault(const char *name, enum name_kind kind, char fault[NAME_FAULT]);
 
 /* A copy in Unicode's composed form, NFC, or in its decomposed one, NFD, as macOS writes file names: names
- * that look the same are the same. What is not UTF-8 is copied as it is. free() it; NULL with *e set when
- * memory is out. */
+ * that look the same are the same. What is not UTF-8 is copied as it is. free() it; NULL with *e. */
 char *name_copy(const char *text, struct err *e);
 char *name_decomposed(const char *text, struct err *e);
 

@@ -18,8 +18,7 @@ int path_leaves(const char *path);
 int path_ends(const char *name, const char *tail);
 
 /* Where a chain of symbolic links leads, of which the last may be dangling: what a file of that name that is
- * made or replaced really is. The path itself where it is no link. free() it; NULL with *e set (links in a
- * circle, say). */
+ * made or replaced really is. The path itself where it is no link. free() it; NULL with *e: a circle, say. */
 char *path_follow(const char *path, struct err *e);
 
 /* 1 where both are one regular file or folder, under whichever names, or will be once they are made; else 0.

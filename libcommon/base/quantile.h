@@ -3,8 +3,7 @@
 
 #include <stddef.h>
 
-/* Of n > 0 numbers in rising order, linearly between two of them (type 7 of Hyndman and Fan 1996, R's
- * default). */
+/* Of n > 0 numbers in rising order, linearly between two of them (type 7 of Hyndman and Fan 1996). */
 double quantile_sorted(const double *sorted, size_t n, double share);
 
 struct quantile_item {

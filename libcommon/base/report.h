@@ -1,5 +1,4 @@
-/* How long work tells of itself. Nothing below the tools prints: it calls what its caller gave it, if
- * anything. */
+/* How long work tells of itself. Nothing below the tools prints: it calls what its caller gave it. */
 #pragma once
 
 #include <stdarg.h>

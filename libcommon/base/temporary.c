@@ -1,7 +1,6 @@
 /* The list of temporary files can be read by a signal's handler at any time, on any thread: entries are never
  * taken out of it, only marked as free. While a file is made, renamed or removed its entry is busy and its
- * thread takes no signals, so a handler that waits until no entry is busy knows exactly which files there
- * are. */
+ * thread takes no signals, so a handler that waits until no entry is busy knows all files. */
 #include "base/temporary.h"
 
 #include "base/mem.h"

@@ -211,9 +211,7 @@ VEC_INLINE vecn vec_exp(vecn x)
 	return p * (vecn)((half + 127) << 23) * (vecn)((whole - half + 127) << 23);
 }
 
-/* 2^x for -126 < x <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked: some float
- * beyond it.
- */
+/* 2^x for -126 < x <= 126: within 2.2 ulp, and cheaper than vec_exp, as no range is checked. */
 VEC_INLINE vecn vec_exp2(vecn x)
 {
 #if VEC_LANES >= 8

@@ -26,7 +26,6 @@ struct cli_file {
  * where they are regular files, and an output need not exist. Two inputs may be one file, but not both stdin.
  *
  * `reads` and `writes` are words with a blank between: the long name of an option ("output" is -o), or in
- * capitals the operand; after a colon the parts of a folder. `more` (may be NULL) are files that are neither.
- */
+ * capitals the operand; after a colon the parts of a folder. `more` (may be NULL) are other files. */
 void cli_refuse_overwrite(
 	const struct cli *c, const char *reads, const char *writes, const struct cli_file *more);

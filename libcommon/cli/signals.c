@@ -29,8 +29,7 @@ static void say(const char *text)
 	}
 }
 
-/* A page of a mapped file that cannot be read is an error like others. The first thread that meets it ends
- * the process. */
+/* A page of a mapped file that cannot be read is an error like others. The first thread ends the process. */
 static void on_bus_error(int number, siginfo_t *info, void *context)
 {
 	static int is_ending;

@@ -3,8 +3,7 @@
 
 /* From now on a signal that ends the tool removes its temporary files first. What is ignored, by nohup say,
  * stays so. At the limit of a file's size writes fail, as on a full disk, and the tool says so. A mapped file
- * that cannot be read, or is cut short meanwhile, is an error as others: "tool: file: reason" and status 4.
- */
+ * that cannot be read, or is cut short meanwhile, is an error: "tool: file: reason", status 4. */
 
 #include <signal.h>
 

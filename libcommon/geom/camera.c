@@ -4,7 +4,6 @@
 #include "base/names.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 void cameras_free(struct cameras *c)
@@ -13,6 +12,14 @@ void cameras_free(struct cameras *c)
 		mem_free_all(c->views[i].name, c->views[i].image, c->views[i].source);
 	free(c->views);
 	*c = (struct cameras){0};
+}
+
+const struct camera *cameras_find(const struct cameras *c, const char *name)
+{
+	for (size_t i = 0; i < c->n; i++)
+		if (!strcmp(c->views[i].name, name))
+			return &c->views[i];
+	return NULL;
 }
 
 int cameras_mark(const struct cameras *c, const char *list, const char *option, char *chosen, struct err *e)

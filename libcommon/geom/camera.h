@@ -33,6 +33,9 @@ struct cameras {
 
 void cameras_free(struct cameras *c);
 
+/* The view of that name, or NULL. */
+const struct camera *cameras_find(const struct cameras *c, const char *name);
+
 /* Sets chosen[i] (n) to 1 for the views in a comma-separated list, the value of an option. 0, or -1 with *e:
  * ERR_USAGE for a name that is no view's. */
 int cameras_mark(const struct cameras *c, const char *list, const char *option, char *chosen, struct err *e);

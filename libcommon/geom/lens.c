@@ -9,8 +9,7 @@
 
 enum { NEWTON_STEPS = 50 };
 
-/* A ray that comes back farther off than this, relative to 1 and its length, is not the one that its pixel
- * shows. */
+/* A ray that comes back farther off than this, relative to 1 and its length, is not its pixel's. */
 static const double same_ray = 1e-6;
 
 /* The pinhole's size, relative to the photograph's: COLMAP's defaults. */
@@ -248,8 +247,7 @@ static void from_pixel(const struct lens *l, const double pixel[2], double plane
 }
 
 /* One step of Newton's method towards the point that the formula takes to `to`; its length, not a number
- * where there is none. Derivatives are central differences: the steps end where the formula holds, whatever
- * their error. */
+ * where there is none. Derivatives are central differences, whose error matters not. */
 static double newton_step(const struct lens *l, const double to[2], double at[2])
 {
 	double j[2][2], value[2];

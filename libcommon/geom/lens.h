@@ -26,8 +26,7 @@ int lens_is_same(const struct lens *a, const struct lens *b);
  * followed only where it is one to one. */
 int lens_project(const struct lens *l, const double ray[2], double pixel[2]);
 
-/* The ray that a pixel shows, by a closed form or Newton's method. Returns 0, or -1 where it is no ray of a
- * pinhole. */
+/* The ray that a pixel shows, by a closed form or Newton's method. 0, or -1: no ray of a pinhole. */
 int lens_unproject(const struct lens *l, const double pixel[2], double ray[2]);
 
 /* Sets size and intrinsics of c to those of the pinhole that `colmap image_undistorter` makes by its own
@@ -39,6 +38,5 @@ void lens_pinhole(const struct lens *l, struct camera *c);
 void cameras_undistort(struct cameras *c);
 
 /* For each pixel of the view c (height,width) that of its photograph, rows x columns, that it shows, or -1;
- * or, where is_back is not 0, for each of the photograph (l->height,l->width) that of the view, rows x
- * columns. */
+ * or, where is_back is not 0, for each of the photograph (l->height,l->width) that of the view. */
 void lens_map(const struct lens *l, const struct camera *c, int is_back, int rows, int columns, int32_t *map);

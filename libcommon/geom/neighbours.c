@@ -32,8 +32,7 @@ static void exchange(struct tree *t, size_t a, size_t b)
 	t->order[b] = kept;
 }
 
-/* Puts the middle of [low, high) where it belongs, smaller ones before it and larger ones after (Hoare's
- * selection). */
+/* Puts the middle of [low, high) where it belongs, smaller before, larger after (Hoare's selection). */
 static void select_middle(struct tree *t, size_t low, size_t high, int axis)
 {
 	const size_t middle = low + (high - low) / 2;

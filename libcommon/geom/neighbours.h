@@ -15,6 +15,5 @@ int neighbours_find(const float *points, size_t n, int k, float *distance, struc
 int neighbours_of(
 	const float *points, size_t n, const float *from, size_t m, int k, float *distance, struct err *e);
 
-/* near (n,k): the numbers of the k nearest other points of each, the nearest first; -1 where there are fewer.
- */
+/* near (n,k): the numbers of the k nearest other points of each, nearest first; -1 where there are fewer. */
 int neighbours_list(const float *points, size_t n, int k, int32_t *near, struct err *e);

@@ -7,8 +7,7 @@
  * too little to tilt what they settle. */
 static const double pull = 1e-3;
 
-/* The eigenvector of the smallest eigenvalue of a symmetric matrix (3,3), which is destroyed: Jacobi's
- * rotations. */
+/* The eigenvector of the smallest eigenvalue of a symmetric matrix (3,3), destroyed (Jacobi's rotations). */
 static void least_vector(double m[3][3], double out[3])
 {
 	double v[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};

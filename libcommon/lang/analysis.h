@@ -64,7 +64,6 @@ int parse_build(
 /* The rules that are of a built parse. Likewise. */
 int parse_apply_rules(struct parse *p, unsigned without, struct err *e);
 
-/* Two of these: "the tray and what is on it" are two; "two boxes, the red one and the one by the door".
- * Likewise. */
+/* Two of these: "the tray and what is on it" are two; so "two boxes, the red one and the one by the door". */
 int parse_companion(struct parse *p, struct err *e);
 int parse_members(struct parse *p, struct err *e);

@@ -27,10 +27,9 @@ static void take_isnt(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i + 1 < t->n; i++) {
 		const int next = tokens_class(t, i + 1) == CLOSED_ADVERB ? i + 2 : i + 1;
-		if (tokens_class(t, i) == CLOSED_NEGATION && !tokens_is(t, i, "no") &&
-			!tokens_is(t, i, "without") && next < t->n && !t->word[next].before &&
-			a->word[next].role == ROLE_ATTRIBUTE && a->word[next].head < next &&
-			noun_after(a, t, next) < 0)
+		if (tokens_class(t, i) == CLOSED_NEGATION && !tokens_is(t, i, "no|without") && next < t->n &&
+			!t->word[next].before && a->word[next].role == ROLE_ATTRIBUTE &&
+			a->word[next].head < next && noun_after(a, t, next) < 0)
 			a->word[next].role = ROLE_EXCEPT;
 	}
 }
@@ -125,9 +124,7 @@ static void take_viewer(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
 		if (a->word[i].role != ROLE_NONE || !is_viewer(t, i) ||
-			!(tokens_is(t, i - 1, "to") || tokens_is(t, i - 1, "from") ||
-				tokens_is(t, i - 1, "between") || tokens_is(t, i - 1, "near") ||
-				tokens_is(t, i - 1, "nearest")))
+			!tokens_is(t, i - 1, "to|from|between|near|nearest"))
 			continue;
 		for (int j = i - 1; j >= 0 && j >= i - 3 && !t->word[j + 1].before; j--)
 			if (a->word[j].role == ROLE_PREDICATE &&
@@ -158,9 +155,7 @@ static void take_over_by(struct analysis *a, const struct tokens *t)
 			a->word[last].head != a->word[first].head)
 			continue;
 		a->word[i].head = last;
-		if (!analysis_has_anchor(a, first) &&
-			(tokens_is(t, first, "over") || tokens_is(t, first, "up") ||
-				tokens_is(t, first, "down")))
+		if (!analysis_has_anchor(a, first) && tokens_is(t, first, "over|up|down"))
 			analysis_give_up(&a->word[first]);
 	}
 }
@@ -168,14 +163,11 @@ static void take_over_by(struct analysis *a, const struct tokens *t)
 /* The way that a word before "corner" says, or -1: the far corner is at the back. */
 static int way_to_corner(const struct tokens *t, int i)
 {
-	static const char *const back[] = {"far", "back", "rear", "upper", NULL};
-	static const char *const front[] = {"near", "front", "nearest", "closest", "lower", NULL};
-
-	return tokens_is_any(t, i, back)    ? PARSE_BEHIND
-	       : tokens_is_any(t, i, front) ? PARSE_FRONT
-	       : tokens_is(t, i, "left")    ? PARSE_LEFT
-	       : tokens_is(t, i, "right")   ? PARSE_RIGHT
-					    : -1;
+	return tokens_is(t, i, "far|back|rear|upper")		     ? PARSE_BEHIND
+	       : tokens_is(t, i, "near|front|nearest|closest|lower") ? PARSE_FRONT
+	       : tokens_is(t, i, "left")			     ? PARSE_LEFT
+	       : tokens_is(t, i, "right")			     ? PARSE_RIGHT
+								     : -1;
 }
 
 /* "in the back right corner" is at the back, on the right and in a corner. */
@@ -186,7 +178,7 @@ static void take_corner(struct analysis *a, const struct tokens *t)
 				     !a->word[i].negated;
 		for (int j = i - 1; is_plain && j >= 0 && !t->word[j + 1].before; j--) {
 			const int way = way_to_corner(t, j);
-			if (way < 0 && !tokens_is(t, j, "hand") && !tokens_is(t, j, "most"))
+			if (way < 0 && !tokens_is(t, j, "hand|most"))
 				break;
 			if (way >= 0 && !analysis_has_anchor(a, j))
 				a->word[j] = (struct analysis_word){

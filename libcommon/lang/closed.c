@@ -1,5 +1,4 @@
-/* Words of the closed classes. The table is libcommon/lang/closed.tsv, of which the build makes initialisers.
- */
+/* Words of the closed classes. The table is libcommon/lang/closed.tsv. */
 #include "lang/closed.h"
 
 #include <string.h>

@@ -1,5 +1,6 @@
 #include "lang/compared.h"
 
+#include "base/list.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
 #include "lang/finish.h"
@@ -7,37 +8,24 @@
 
 #include <string.h>
 
-static int is_among(const char *word, const char *const *list)
-{
-	for (; *list; list++)
-		if (!strcmp(word, *list))
-			return 1;
-	return 0;
-}
-
 enum compared_look compared_look(const char *adjective)
 {
-	static const char *const dark[] = {"dark", "dim", "dusky", "gloomy", NULL},
-				 *const bright[] = {"bright", "fair", "light", "pale", NULL},
-				 *const colourful[] = {
-					 "colorful", "colourful", "gaudy", "saturated", "vivid", NULL};
-
-	return is_among(adjective, dark)	? COMPARED_DARK
-	       : is_among(adjective, bright)	? COMPARED_BRIGHT
-	       : is_among(adjective, colourful) ? COMPARED_COLOURFUL
-	       : colour_word(adjective) >= 0	? COMPARED_COLOUR
-	       : finish_of(adjective) >= 0	? COMPARED_FINISH
-						: COMPARED_NONE;
+	return list_has("dark|dim|dusky|gloomy", adjective)			 ? COMPARED_DARK
+	       : list_has("bright|fair|light|pale", adjective)			 ? COMPARED_BRIGHT
+	       : list_has("colorful|colourful|gaudy|saturated|vivid", adjective) ? COMPARED_COLOURFUL
+	       : colour_word(adjective) >= 0					 ? COMPARED_COLOUR
+	       : finish_of(adjective) >= 0					 ? COMPARED_FINISH
+										 : COMPARED_NONE;
 }
 
 /* Adjectives of size and place. */
 static int is_measure(const char *base)
 {
-	static const char *const measures[] = {"bulky", "chubby", "chunky", "close", "deep", "far", "fat",
-		"few", "flat", "heavy", "high", "lofty", "low", "narrow", "near", "plump", "shallow",
-		"skinny", "slight", "slim", "stout", "tall", "thick", "thin", NULL};
+	static const char measures[] =
+		"bulky|chubby|chunky|close|deep|far|fat|few|flat|heavy|high|lofty|low|narrow|"
+		"near|plump|shallow|skinny|slight|slim|stout|tall|thick|thin";
 
-	return is_among(base, measures) || closed_is(base, CLOSED_SIZE) || closed_is(base, CLOSED_PLACE);
+	return list_has(measures, base) || closed_is(base, CLOSED_SIZE) || closed_is(base, CLOSED_PLACE);
 }
 
 enum adjective { NONE, MEASURE, LOOK, OTHER };

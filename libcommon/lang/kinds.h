@@ -11,10 +11,8 @@ int kinds_next(long *at, char noun[KINDS_LENGTH]);
 /* Whether a lemma is in any group. */
 int kinds_have(const char *lemma);
 
-/* Whether a lemma is in the line of this name: "holder", "gathering" (a flower bouquet is flowers), "vague",
- * "shape". */
+/* Whether a lemma is in the line of this name: "holder", "gathering" (bouquet), "vague", "shape". */
 int kinds_listed(const char *list, const char *lemma);
 
-/* The chance that what is called by one lemma is called by the other, as their group has it; 0 where they
- * share none. */
+/* The chance that what is called by one lemma is called by the other, as their group has it; 0 without. */
 double kinds_share(const char *a, const char *b);

@@ -32,6 +32,5 @@ struct marked {
 /* Of one line. Returns 0, or -1 with *e: what is wrong with it. */
 int marked_take(struct marked *m, const char *line, struct err *e);
 
-/* What the marks say of the words that tokens_take made of m->text; -1 with *e where they hang in a circle.
- */
+/* What the marks say of the words that tokens_take made of m->text; -1 with *e: a circle. */
 int marked_analyse(const struct marked *m, const struct tokens *t, struct analysis *a, struct err *e);

@@ -1,5 +1,7 @@
 #include "lang/parse.h"
 
+#include "base/list.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -83,10 +85,7 @@ void parse_list_cut(struct parse_list *list, int end)
 	list->n = n;
 }
 
-int parse_word_is(const struct parse *p, int word, const char *const *list)
+int parse_word_is(const struct parse *p, int word, const char *words)
 {
-	for (; word >= 0 && word < p->word_count && *list; list++)
-		if (!strcmp(p->words[word].text, *list))
-			return 1;
-	return 0;
+	return word >= 0 && word < p->word_count && list_has(words, p->words[word].text);
 }

@@ -125,5 +125,5 @@ int parse_list_has(const struct parse_list *list, int item);
 /* Only the items below `end` stay. */
 void parse_list_cut(struct parse_list *list, int end);
 
-/* Whether there is such a word and its text is in a list that ends in NULL. */
-int parse_word_is(const struct parse *p, int word, const char *const *list);
+/* Whether there is such a word and its text is one of "this|that". */
+int parse_word_is(const struct parse *p, int word, const char *words);

@@ -8,9 +8,6 @@
 #include "lang/parse_private.h"
 #include "lang/rules.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 static int add_words(struct build *b)
 {
 	struct parse *p = b->p;
@@ -57,11 +54,8 @@ static int add_phrases(struct build *b)
  * "coloured" by itself does. */
 static int says_nothing(const struct tokens *t, int i)
 {
-	static const char *const words[] = {
-		"'s", "side", "hand", "end", "colour", "color", "piece", "sized", NULL};
-
-	return tokens_is_any(t, i, words) || ((tokens_is(t, i, "coloured") || tokens_is(t, i, "colored")) &&
-						     i && colour_word(t->word[i - 1].text) >= 0);
+	return tokens_is(t, i, "'s|side|hand|end|colour|color|piece|sized") ||
+	       (tokens_is(t, i, "coloured|colored") && i && colour_word(t->word[i - 1].text) >= 0);
 }
 
 static void widen(struct parse_span *s, struct parse_span by)
@@ -98,10 +92,8 @@ static int name_ones(struct build *b)
 	const struct parse_list *noun = &b->p->phrases[0].noun;
 
 	for (int i = 0; i < b->t->n; i++) {
-		if (b->phrase_of[i] <= 0 ||
-			!(tokens_is(b->t, i, "one") || tokens_is(b->t, i, "ones") ||
-				tokens_is(b->t, i, "twin") || tokens_is(b->t, i, "others") ||
-				tokens_class(b->t, i) == CLOSED_NUMBER))
+		if (b->phrase_of[i] <= 0 || !(tokens_is(b->t, i, "one|ones|twin|others") ||
+						    tokens_class(b->t, i) == CLOSED_NUMBER))
 			continue;
 		for (int k = 0; k < noun->n; k++)
 			if (parse_list_add(&b->p->phrases[b->phrase_of[i]].noun, noun->item[k], b->e))
@@ -112,11 +104,6 @@ static int name_ones(struct build *b)
 
 static int fill_phrases(struct build *b)
 {
-	static const char *const viewers[] = {
-		"us", "me", "you", "i", "myself", "yourself", "camera", "viewer", NULL};
-	static const char *const places[] = {
-		"room", "scene", "photo", "image", "picture", "table", "desk", "view", "row", NULL};
-
 	for (int i = 0; i < b->t->n; i++) {
 		if (b->phrase_of[i] < 0)
 			continue;
@@ -125,9 +112,11 @@ static int fill_phrases(struct build *b)
 			continue;
 		if (add_noun(b, i, f))
 			return -1;
-		f->viewer = b->phrase_of[i] && tokens_is_any(b->t, i, viewers);
-		f->scene = tokens_is(b->t, i, "room") || tokens_is(b->t, i, "scene") ||
-			   (b->phrase_of[i] && tokens_is_any(b->t, i, places) &&
+		f->viewer =
+			b->phrase_of[i] && tokens_is(b->t, i, "us|me|you|i|myself|yourself|camera|viewer");
+		f->scene = tokens_is(b->t, i, "room|scene") ||
+			   (b->phrase_of[i] &&
+				   tokens_is(b->t, i, "room|scene|photo|image|picture|table|desk|view|row") &&
 				   tokens_is(b->t, i - 1, "the") && tokens_is(b->t, i - 2, "of"));
 	}
 	for (int i = 0; i < b->t->n; i++) {
@@ -150,9 +139,8 @@ static int fill_phrases(struct build *b)
 /* By the words around a predicate: "furthest back", "more to the left", "the very left". */
 static enum parse_degree degree_of(const struct build *b, int i)
 {
-	static const char *const most[] = {"most", "extreme", "very", "farthest", "furthest", "least",
-		"greatest", "shortest", "smallest", "largest", NULL};
-	static const char *const more[] = {"more", "further", "farther", NULL};
+	static const char most[] =
+		"most|extreme|very|farthest|furthest|least|greatest|shortest|smallest|largest";
 	const struct tokens *t = b->t;
 	const char *w = t->word[i].text;
 	int c = tokens_class(t, i);
@@ -165,7 +153,7 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	if (r == PARSE_NEAR && b->a->word[i].negated && c == CLOSED_PLACE &&
 		closed_words[t->word[i].closed].relation == PARSE_FAR)
 		return PARSE_PLAIN;
-	if (tokens_is_any(t, i, most))
+	if (tokens_is(t, i, most))
 		return PARSE_MOST;
 	if (r == PARSE_OTHER)
 		return compared_at(t, i);
@@ -180,9 +168,9 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	for (int j = i - 1; j >= 0 && j >= i - 3; j--) {
 		if (b->a->word[j].role != ROLE_NONE || t->word[j + 1].before)
 			break;
-		if (tokens_is_any(t, j, most))
+		if (tokens_is(t, j, most))
 			return PARSE_MOST;
-		if (tokens_is_any(t, j, more))
+		if (tokens_is(t, j, "more|further|farther"))
 			return PARSE_MORE;
 	}
 	const int is_end = tokens_is(t, i + 1, "hand") ? i + 2 : i + 1;
@@ -213,7 +201,7 @@ static struct parse_span predicate_span(const struct build *b, int i)
 
 static int is_nothing(const struct tokens *t, int i)
 {
-	return tokens_is(t, i, "nothing") || tokens_is(t, i, "nobody") || tokens_is(t, i, "none");
+	return tokens_is(t, i, "nothing|nobody|none");
 }
 
 /* Whether a predicate says what a thing does or is for. */
@@ -262,8 +250,7 @@ static int add_clause(struct build *b, int i, int from, int end)
 	return 0;
 }
 
-/* "near the desk and the chair" says two things; "between the desk and the chair" one. Of what is above both
- * a person says so once. */
+/* "near the desk and the chair" says two things; "between the desk and the chair" one, as "above" does. */
 static int add_predicate(struct build *b, int i)
 {
 	int anchors = 0;
@@ -336,12 +323,9 @@ static void find_view(struct build *b)
 		b->p->view_phrase = b->phrase_of[i];
 		b->p->view = PARSE_VIEW_FACING;
 		for (int j = i - 1; j >= 0 && j >= i - 5 && !b->t->word[j + 1].before; j--) {
-			if (tokens_is(b->t, j, "facing") || tokens_is(b->t, j, "face") ||
-				tokens_is(b->t, j, "towards") || tokens_is(b->t, j, "toward"))
+			if (tokens_is(b->t, j, "facing|face|towards|toward"))
 				break;
-			if (tokens_is(b->t, j, "from") || tokens_is(b->t, j, "through") ||
-				tokens_is(b->t, j, "entering") || tokens_is(b->t, j, "enter") ||
-				tokens_is(b->t, j, "standing") || tokens_is(b->t, j, "in"))
+			if (tokens_is(b->t, j, "from|through|entering|enter|standing|in"))
 				b->p->view = PARSE_VIEW_FROM;
 		}
 		return;

@@ -23,15 +23,12 @@ static int relation_of(const struct parse *p, int word)
 /* The first word of "and", "together with" or "as well as" that ends before word i; or -1. */
 static int joint_before(const struct parse *p, int i)
 {
-	static const char *const plus[] = {"and", "plus", NULL}, *const with[] = {"with", NULL},
-				 *const along[] = {"together", "along", NULL}, *const as[] = {"as", NULL},
-				 *const well[] = {"well", NULL};
-
-	if (parse_word_is(p, i - 1, plus))
+	if (parse_word_is(p, i - 1, "and|plus"))
 		return i - 1;
-	if (parse_word_is(p, i - 1, with) && parse_word_is(p, i - 2, along))
+	if (parse_word_is(p, i - 1, "with") && parse_word_is(p, i - 2, "together|along"))
 		return i - 2;
-	return parse_word_is(p, i - 1, as) && parse_word_is(p, i - 2, well) && parse_word_is(p, i - 3, as)
+	return parse_word_is(p, i - 1, "as") && parse_word_is(p, i - 2, "well") &&
+			       parse_word_is(p, i - 3, "as")
 		       ? i - 3
 		       : -1;
 }
@@ -39,16 +36,13 @@ static int joint_before(const struct parse *p, int i)
 /* Whether "it" is after a place: "under it", "to the left of it". */
 static int is_by_it(const struct parse *p, int place)
 {
-	static const char *const it[] = {"it", "them", NULL}, *const of[] = {"of", "to", "from", NULL};
-
-	return parse_word_is(p, place + 1, it) ||
-	       (parse_word_is(p, place + 1, of) && parse_word_is(p, place + 2, it));
+	return parse_word_is(p, place + 1, "it|them") ||
+	       (parse_word_is(p, place + 1, "of|to|from") && parse_word_is(p, place + 2, "it|them"));
 }
 
 /* The place of a thing that is spoken of from word `from` on: 1 and *c, or 0. */
 static int find_place(const struct parse *p, int from, struct companion *c)
 {
-	static const char *const they[] = {"it", "they", NULL};
 	const int last = p->word_count - 1;
 
 	c->is_round = 0;
@@ -56,7 +50,7 @@ static int find_place(const struct parse *p, int from, struct companion *c)
 		if (relation_of(p, c->place) >= 0 && is_by_it(p, c->place))
 			return 1;
 	for (int w = from; w < last && relation_of(p, last) >= 0; w++)
-		c->is_round |= parse_word_is(p, w, they);
+		c->is_round |= parse_word_is(p, w, "it|they");
 	return c->is_round;
 }
 
@@ -93,15 +87,11 @@ static int has_class(const struct parse *p, int from, int to, unsigned classes)
 	return 0;
 }
 
-/* "There's the laptop, and the cable behind it" tells where the cable is; so does what comes after a pause.
- */
+/* "There's the laptop, and the cable behind it" tells where the cable is; so does what follows a pause. */
 static int says_where(const struct parse *p, const struct companion *c)
 {
-	static const char *const tells[] = {
-		"there", "here", "see", "spot", "locate", "start", "where", "know", NULL};
-
 	for (int w = 0; w < c->joint; w++)
-		if (parse_word_is(p, w, tells))
+		if (parse_word_is(p, w, "there|here|see|spot|locate|start|where|know"))
 			return 1;
 	for (int w = c->joint; w < c->place; w++)
 		if (p->words[w + 1].span.begin > p->words[w].span.end + 1)
@@ -123,20 +113,17 @@ static int are_named(const struct parse *p, const struct companion *c)
 
 static int find_companion(const struct parse *p, struct companion *c)
 {
-	static const char *const the[] = {"the", "all", "also", NULL};
-	static const char *const things[] = {
-		"whatever", "what", "everything", "anything", "thing", "things", "something", "stuff", NULL};
-
 	for (int w = 1; w < p->word_count - 1; w++) {
 		int head = w + 1;
 		c->joint = joint_before(p, head);
 		c->from = w + 1;
 		if (c->joint < 1)
 			continue;
-		while (parse_word_is(p, head, the))
+		while (parse_word_is(p, head, "the|all|also"))
 			head++;
 		c->first = c->second = -1;
-		const int is_named = !parse_word_is(p, head, things);
+		const int is_named = !parse_word_is(
+			p, head, "whatever|what|everything|anything|thing|things|something|stuff");
 		if (!find_place(p, head + !is_named, c) || says_where(p, c))
 			continue;
 		if (!is_named)
@@ -235,11 +222,10 @@ static int take_first(struct parse *p, const struct companion *c, int *is_so, st
 /* Of the second thing where that has no name: "the thing under it" is one. */
 static int count_second(const struct parse *p, const struct companion *c)
 {
-	static const char *const one[] = {"thing", "something", NULL};
 	int is_one = c->is_round;
 
 	for (int w = c->from; w < c->place; w++)
-		is_one |= parse_word_is(p, w, one);
+		is_one |= parse_word_is(p, w, "thing|something");
 	return is_one ? PARSE_ONE : PARSE_ALL;
 }
 

@@ -24,24 +24,20 @@ static int phrase_start(const struct build *b, int head)
 
 static void count_phrase(struct build *b, int head, struct parse_phrase *f)
 {
-	static const char *const several[] = {
-		"ones", "things", "objects", "items", "stuff", "those", "these", NULL};
 	const struct tokens *t = b->t;
 	int start = phrase_start(b, head), number = 0, of;
 
 	for (int i = start; i <= head && !(number > 1 && tokens_is(t, i, "of")); i++)
 		if (tokens_class(t, i) == CLOSED_NUMBER && (!number || build_value(t, i) > 0))
 			number = build_value(t, i);
-	if (tokens_is(t, head, "everything") || tokens_is(t, head, "anything") ||
-		tokens_is(t, head, "whatever"))
+	if (tokens_is(t, head, "everything|anything|whatever"))
 		number = PARSE_ALL;
 	if (!number && build_names_kind(b, head) && build_is_plural(t, head))
 		number = PARSE_SEVERAL;
-	if (!number && tokens_is_any(t, head, several))
+	if (!number && tokens_is(t, head, "ones|things|objects|items|stuff|those|these"))
 		number = PARSE_SEVERAL;
 	f->count = number ? number : PARSE_ONE;
-	/* "of the two cups", "which of the cups", unless all of them are meant; but not "think of both cups"
-	 */
+	/* "of the two cups", "which of the cups", unless all are meant; not "think of both cups" */
 	of = start - 1;
 	if (tokens_is(t, of, "of") && f->count != PARSE_ONE && tokens_class(t, of - 1) != CLOSED_NUMBER &&
 		f == &b->p->phrases[0] && !tokens_is(t, of - 1, "think")) {
@@ -83,23 +79,21 @@ static int compares_later(const struct build *b, int i)
 /* "The red one", but not "every last one", "one small plate" or "not the one". */
 static int is_one(const struct build *b, int i)
 {
-	static const char *const each[] = {"every", "each", NULL};
-	static const char *const which[] = {
-		"the", "that", "this", "which", "whichever", "my", "your", "his", "her", "their", NULL};
+	static const char which[] = "the|that|this|which|whichever|my|your|his|her|their";
 	const struct tokens *t = b->t;
 	int before = i - 1;
 
 	if (!tokens_is(t, i, "one") || b->a->word[i].role != ROLE_NONE)
 		return 0;
-	if (tokens_is_any(t, i - 1, each) || tokens_is_any(t, i - 2, each) ||
+	if (tokens_is(t, i - 1, "every|each") || tokens_is(t, i - 2, "every|each") ||
 		(tokens_is(t, i - 1, "the") && tokens_class(t, i - 2) == CLOSED_NEGATION))
 		return 0;
-	while (before > b->noun && !t->word[before + 1].before && !tokens_is_any(t, before, which))
+	while (before > b->noun && !t->word[before + 1].before && !tokens_is(t, before, which))
 		before--;
 	const int is_number = i + 1 < t->n && !t->word[i + 1].before &&
 			      (tokens_class(t, i + 1) < 0 || tokens_class(t, i + 1) == CLOSED_SIZE ||
 				      tokens_class(t, i + 1) == CLOSED_ATTRIBUTE);
-	return !is_number || tokens_is_any(t, before, which);
+	return !is_number || tokens_is(t, before, which);
 }
 
 /* "Give me the other", "but mine is by the door"; "those are mine" picks none. */
@@ -110,8 +104,7 @@ static int picks(const struct tokens *t, int i)
 			     tokens_class(t, i - 1) == CLOSED_EXCEPT || tokens_is(t, i - 1, "yet");
 
 	return (tokens_is(t, i, "mine") && is_start && i + 1 < t->n && t->word[i + 1].before != PAUSE_STOP) ||
-	       (tokens_is(t, i, "other") && is_end &&
-		       (tokens_is(t, i - 1, "the") || tokens_is(t, i - 1, "that")));
+	       (tokens_is(t, i, "other") && is_end && tokens_is(t, i - 1, "the|that"));
 }
 
 /* "Two red chairs. Which one is ...": a later word of the target that means one of them. */

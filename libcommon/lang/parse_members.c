@@ -1,6 +1,5 @@
 /* What is named one by one: "two boxes, the red one on the shelf and the one by the door". */
 #include "lang/analysis.h"
-#include "lang/closed.h"
 
 #include <string.h>
 
@@ -13,10 +12,8 @@ static int is_one_of(const struct parse_phrase *f, const struct parse_phrase *ta
 /* Whether the target's noun says no more than that there are several: "the things", "a group". */
 static int is_of_things(const struct parse *p, const struct parse_phrase *f)
 {
-	static const char *const sets[] = {
-		"group", "pair", "trio", "set", "lot", "collection", "bunch", NULL};
-
-	return !f->noun.n || parse_word_is(p, f->noun.item[f->noun.n - 1], sets);
+	return !f->noun.n ||
+	       parse_word_is(p, f->noun.item[f->noun.n - 1], "group|pair|trio|set|lot|collection|bunch");
 }
 
 /* Whether the further targets are the members of what the target names. */

@@ -9,10 +9,10 @@ static enum parse_relation counted_from(struct build *b)
 	for (int i = 0; i < t->n; i++) {
 		if (build_is_way(t, i))
 			return build_end(t, i);
-		if (!tokens_is(t, i, "from") && !tokens_is(t, i, "at"))
+		if (!tokens_is(t, i, "from|at"))
 			continue;
 		int j = i + 1;
-		while (tokens_is(t, j, "the") || tokens_is(t, j, "very") || tokens_is(t, j, "far"))
+		while (tokens_is(t, j, "the|very|far"))
 			j++;
 		if (build_end(t, j) != PARSE_OTHER && !tokens_is(t, j + 1, "of")) {
 			b->from = b->a->word[j].role == ROLE_PREDICATE ? j : b->from;
@@ -25,10 +25,7 @@ static enum parse_relation counted_from(struct build *b)
 /* Words that go on with an ordinal by itself: "third from", "second in". */
 static int goes_on(const struct tokens *t, int i)
 {
-	static const char *const on[] = {
-		"from", "fae", "frae", "along", "down", "up", "in", "on", "of", NULL};
-
-	return tokens_is_any(t, i, on);
+	return tokens_is(t, i, "from|fae|frae|along|down|up|in|on|of");
 }
 
 /* Whether word j is called like the target: "a row of cars, the third car". */
@@ -72,19 +69,16 @@ static int counted_by(const struct build *b, int i, int *is_alone)
 	return -1;
 }
 
-/* "the second", "third from the left", "what comes first"; but not "for a second", "put first", "last on
- * Monday". */
+/* "the second", "third from the left", "what comes first"; not "for a second", "put first". */
 static int counts_alone(const struct tokens *t, int i)
 {
-	static const char *const comes[] = {"comes", "come", "coming", "came", "stands", "stand", "meet",
-		"meets", "reach", "hit", "pass", NULL};
-	static const char *const the[] = {"the", "that", "this", NULL};
 	const int is_start = !i || t->word[i].before != PAUSE_NONE;
 	const int is_end = i + 1 >= t->n || t->word[i + 1].before != PAUSE_NONE;
 
 	const int before = tokens_is(t, i - 1, "very") ? i - 2 : i - 1;
 
-	if (tokens_is_any(t, before, the) || tokens_is_any(t, before, comes) ||
+	if (tokens_is(t, before,
+		    "the|that|this|comes|come|coming|came|stands|stand|meet|meets|reach|hit|pass") ||
 		tokens_class(t, before) == CLOSED_BE)
 		return 1;
 	const int is_first_or_last = build_value(t, i) == 1 || build_value(t, i) < 0;

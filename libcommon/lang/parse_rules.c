@@ -19,10 +19,9 @@ static void take_one_of(const struct parse *p, struct parse_phrase *f)
 /* A jar of tea is a jar: what fills it only says which. */
 static void take_content(const struct parse *p, struct parse_phrase *f)
 {
-	static const char *const of[] = {"of", NULL};
 	const int content = f->noun.n ? f->noun.item[f->noun.n - 1] : 0;
 
-	for (int k = 0; k < f->attributes.n && parse_word_is(p, content - 1, of); k++) {
+	for (int k = 0; k < f->attributes.n && parse_word_is(p, content - 1, "of"); k++) {
 		int *const word = &f->attributes.item[k];
 		if (*word == content - 2 && kinds_listed("holder", p->words[*word].lemma)) {
 			f->noun.item[f->noun.n - 1] = *word;

@@ -6,7 +6,6 @@
 #include "nn/loss.h"
 
 #include <math.h>
-#include <string.h>
 
 void parser_weights_begin(struct parser_weights *w, struct rng *r)
 {

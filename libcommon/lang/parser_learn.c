@@ -1,5 +1,4 @@
-/* Samples, the loop over them (shuffled, in batches, one step of Adam for each) and the networks that learn
- * at once. */
+/* Samples, the loop over them (shuffled, in batches, a step of Adam each), networks that learn at once. */
 #include "lang/parser_learn.h"
 
 #include "base/mem.h"

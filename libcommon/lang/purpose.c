@@ -13,10 +13,8 @@ static int is_open(const struct parse *p, int i)
 
 static int asks_before(const struct parse *p, int word)
 {
-	static const char *const asks[] = {"what", "whatever", "where", "which", "how", NULL};
-
 	for (int i = 0; i < word; i++)
-		if (parse_word_is(p, i, asks))
+		if (parse_word_is(p, i, "what|whatever|where|which|how"))
 			return 1;
 	return 0;
 }
@@ -25,25 +23,22 @@ static int asks_before(const struct parse *p, int word)
  * of. What "I" did is no purpose. */
 static int after_doer(const struct parse *p, int i)
 {
-	static const char *const doers[] = {"you", "they", "people", "somebody", "someone", "anybody", NULL},
-				 *const self[] = {"i", "we", NULL}, *const to[] = {"to", NULL},
-				 *const one[] = {"one", NULL}, *const let[] = {"let", NULL},
-				 *const us[] = {"us", "'s", NULL}, *const did[] = {"did", NULL};
-	const int is_self = parse_word_is(p, i, self),
-		  is_us = parse_word_is(p, i - 1, let) && parse_word_is(p, i, us);
+	const int is_self = parse_word_is(p, i, "i|we"),
+		  is_us = parse_word_is(p, i - 1, "let") && parse_word_is(p, i, "us|'s");
 	int verb = i + 1;
 
 	if (closed_class_of(p, i - 1) == CLOSED_AUXILIARY && !is_us &&
 		!asks_before(p, i)) /* "could you lift it" */
 		return i;
 	const int is_one =
-		is_us || (parse_word_is(p, i, one) && closed_class_of(p, i + 1) == CLOSED_AUXILIARY);
-	if (parse_word_is(p, i - 1, did) || (!is_self && !is_one && !parse_word_is(p, i, doers)))
+		is_us || (parse_word_is(p, i, "one") && closed_class_of(p, i + 1) == CLOSED_AUXILIARY);
+	if (parse_word_is(p, i - 1, "did") ||
+		(!is_self && !is_one && !parse_word_is(p, i, "you|they|people|somebody|someone|anybody")))
 		return i;
 	while (closed_class_of(p, verb) == CLOSED_AUXILIARY || closed_class_of(p, verb) == CLOSED_HAVE ||
 		closed_class_of(p, verb) == CLOSED_ADVERB ||
-		(closed_class_of(p, verb) == CLOSED_REQUEST && parse_word_is(p, verb + 1, to)) ||
-		parse_word_is(p, verb, to))
+		(closed_class_of(p, verb) == CLOSED_REQUEST && parse_word_is(p, verb + 1, "to")) ||
+		parse_word_is(p, verb, "to"))
 		verb++;
 	return is_self && verb == i + 1 && closed_class_of(p, i - 1) != CLOSED_AUXILIARY ? i : verb;
 }
@@ -61,21 +56,18 @@ static int says_doing(const struct parse *p)
 /* "for cutting", "used to cut", "something to cut with". */
 static int says_for(const struct parse *p)
 {
-	static const char *const purposes[] = {"for", NULL}, *const used[] = {"used", "use", NULL},
-				 *const to[] = {"to", "for", "it", NULL},
-				 *const any[] = {"anything", "everything", NULL};
-
 	for (int i = 0; i < p->word_count; i++) {
-		if (parse_word_is(p, i, purposes) && is_open(p, i + 1) &&
+		if (parse_word_is(p, i, "for") && is_open(p, i + 1) &&
 			token_ends(p->words[i + 1].text, "ing", 2))
 			return 1;
-		if (parse_word_is(p, i, purposes) && is_open(p, i + 1) &&
+		if (parse_word_is(p, i, "for") && is_open(p, i + 1) &&
 			closed_class_of(p, i - 1) == CLOSED_GENERIC)
 			return 1;
-		if (parse_word_is(p, i, used) && parse_word_is(p, i + 1, to))
+		if (parse_word_is(p, i, "used|use") && parse_word_is(p, i + 1, "to|for|it"))
 			return 1;
-		if (parse_word_is(p, i, to) && is_open(p, i + 1) &&
-			(!i || closed_class_of(p, i - 1) == CLOSED_GENERIC || parse_word_is(p, i - 1, any)))
+		if (parse_word_is(p, i, "to|for|it") && is_open(p, i + 1) &&
+			(!i || closed_class_of(p, i - 1) == CLOSED_GENERIC ||
+				parse_word_is(p, i - 1, "anything|everything")))
 			return 1;
 	}
 	return 0;
@@ -94,13 +86,12 @@ static int first_word(const struct parse *p)
 /* "where the flowers go", "what rings", but not "where is the vase" or "what stands by the wall". */
 static int asks_for(const struct parse *p)
 {
-	static const char *const begins[] = {"what", "where", "how", NULL};
 	const int i = first_word(p), next = closed_class_of(p, i + 1);
 	const int asks_who = next == CLOSED_AUXILIARY &&
 			     (closed_class_of(p, i + 2) == CLOSED_PRONOUN || after_doer(p, i + 2) > i + 2);
 
-	return parse_word_is(p, i, begins) && !asks_who && next != CLOSED_BE && next != CLOSED_POSE &&
-	       next != CLOSED_PLACE && next != CLOSED_HAVE && next != -1;
+	return parse_word_is(p, i, "what|where|how") && !asks_who && next != CLOSED_BE &&
+	       next != CLOSED_POSE && next != CLOSED_PLACE && next != CLOSED_HAVE && next != -1;
 }
 
 int purpose_is_said(const struct parse *p)
@@ -110,10 +101,9 @@ int purpose_is_said(const struct parse *p)
 
 int purpose_is_content(const struct parse *p, int word)
 {
-	static const char *const empty[] = {"used", "use", "using", "go", "goes", "come", "comes", "make",
-		"makes", "put", "keep", "keeps", "let", "lets", "want", "wants", "somebody", "people", NULL};
-	static const char *const poses[] = {"sit", "sits", "lie", "hang", "hangs", "lean", NULL};
+	static const char empty[] =
+		"used|use|using|go|goes|come|comes|make|makes|put|keep|keeps|let|lets|want|wants|somebody|people";
 
-	return (is_open(p, word) || parse_word_is(p, word, poses)) && !parse_word_is(p, word, empty) &&
-	       colour_word(p->words[word].lemma) < 0;
+	return (is_open(p, word) || parse_word_is(p, word, "sit|sits|lie|hang|hangs|lean")) &&
+	       !parse_word_is(p, word, empty) && colour_word(p->words[word].lemma) < 0;
 }

@@ -1,5 +1,4 @@
-/* Sentences that say what a thing is for, or does, and not what it is: "what you drink from", "for cutting
- * paper". */
+/* Sentences that say what a thing is for, or does, and not what it is: "what you drink from". */
 #pragma once
 
 #include "lang/parse.h"

@@ -82,15 +82,14 @@ static int are_idle(const struct tokens *t, int begin, int end)
 {
 	static const unsigned idle =
 		1U << CLOSED_PRONOUN | 1U << CLOSED_AUXILIARY | 1U << CLOSED_REQUEST | 1U << CLOSED_ADVERB;
-	static const char *const words[] = {"tell", "say", "know", "wonder", "give", "measure", "compute",
-		"calculate", "ok", "hey", "hi", "hello", "and", "so", "want", "like", "to", "if", "here",
-		"there", "now", "then", "around", "about", "in", "total", "altogether", "roughly",
-		"approximately", "exactly", "need", "find", "out", "see", "check", "just", "well", "sorry",
-		"excuse", "thanks", "whether", "or", NULL};
+	static const char words[] =
+		"tell|say|know|wonder|give|measure|compute|calculate|ok|hey|hi|hello|and|so|want|like|to|"
+		"if|here|there|now|then|around|about|in|total|altogether|roughly|approximately|exactly|"
+		"need|find|out|see|check|just|well|sorry|excuse|thanks|whether|or";
 
 	for (; begin < end; begin++) {
 		const int class = tokens_class(t, begin);
-		if ((class < 0 || !(idle >> class & 1)) && !tokens_is_any(t, begin, words))
+		if ((class < 0 || !(idle >> class & 1)) && !tokens_is(t, begin, words))
 			return 0;
 	}
 	return 1;

@@ -5,8 +5,7 @@
 #ifdef HAVE_WORDNET
 #include <wn.h>
 
-/* The synsets of a lemma as a part of speech, the commonest first: how many, at most `most`. None where there
- * is no database. */
+/* The synsets of a lemma as a part of speech, the commonest first: how many, at most `most`. */
 int synsets_of(const char *lemma, int pos, long *synsets, int most);
 
 /* counts (n): how often each of the first n synsets was meant in the texts that were tagged. */

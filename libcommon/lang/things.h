@@ -1,6 +1,5 @@
 /* Everyday things: what people call each, what it is for, and what it is made of and has. English; the table
- * is lang/things.tsv, a line of three fields (names; uses; what it has) for each kind of thing, and a part of
- * the program. */
+ * is lang/things.tsv, a line of three fields (names; uses; what it has) each. */
 #pragma once
 
 #include <stddef.h>

@@ -6,8 +6,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 EMBED(things_vectors, "libcommon/lang/things.vectors");
 extern const unsigned char things_vectors_begin[], things_vectors_end[];

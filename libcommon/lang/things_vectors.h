@@ -21,8 +21,7 @@ struct things_vectors {
 int things_vectors_open(struct things_vectors *t, const char *encoder, int width, struct err *e);
 void things_vectors_free(struct things_vectors *t);
 
-/* The best cosine of a line of one with a line of the other: how far they are for the same; -1 where one has
- * none. */
+/* The best cosine of a line of one with a line of the other: how far they are for the same; -1 without. */
 double things_vectors_between(
 	const struct things_vectors *t, const int *a, size_t a_n, const int *b, size_t b_n);
 

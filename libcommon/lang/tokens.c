@@ -1,5 +1,6 @@
 #include "lang/tokens.h"
 
+#include "base/list.h"
 #include "lang/closed.h"
 #include "lang/spelling.h"
 
@@ -270,15 +271,7 @@ int tokens_class(const struct tokens *t, int i)
 	return i < 0 || i >= t->n || t->word[i].closed < 0 ? -1 : (int)closed_words[t->word[i].closed].class;
 }
 
-int tokens_is(const struct tokens *t, int i, const char *text)
+int tokens_is(const struct tokens *t, int i, const char *words)
 {
-	return i >= 0 && i < t->n && !strcmp(t->word[i].text, text);
-}
-
-int tokens_is_any(const struct tokens *t, int i, const char *const *words)
-{
-	for (; *words; words++)
-		if (tokens_is(t, i, *words))
-			return 1;
-	return 0;
+	return i >= 0 && i < t->n && list_has(words, t->word[i].text);
 }

@@ -1,8 +1,7 @@
 /* The one tokeniser of sentences: words with their place in the text, their lemma and the pause before them.
  *
  * Clitics are words of their own ("isn't" is "is" and "n't", "penguin's" is "penguin" and "'s"), also where
- * the apostrophe is left out ("isnt", "wheres"); hyphens part words. Any bytes may come in; what is not ASCII
- * is part of a word. */
+ * the apostrophe is left out ("isnt", "wheres"); hyphens part words; bytes that are not ASCII do not. */
 #pragma once
 
 #include "lang/parse.h"
@@ -35,11 +34,10 @@ struct tokens {
 void tokens_take(
 	struct tokens *t, const char *text, const char *pieces, const char *const *known, int known_count);
 
-/* The enum closed_class of a word, -1 where it has none or is none (i out of range); whether it is `text`. */
+/* The enum closed_class of a word, -1 where it has none or is none (i out of range); whether it is one of
+ * "this|that". */
 int tokens_class(const struct tokens *t, int i);
-int tokens_is(const struct tokens *t, int i, const char *text);
-/* Whether it is one of the words, of which NULL is the last. */
-int tokens_is_any(const struct tokens *t, int i, const char *const *words);
+int tokens_is(const struct tokens *t, int i, const char *words);
 
 /* Whether a word ends so, after at least `stem` bytes. */
 int token_ends(const char *word, const char *tail, size_t stem);

@@ -14,8 +14,7 @@
 #include <wn.h>
 
 enum { DEEPEST = 10, THINGS = 4 };
-/* What a sense counts that those texts do not have, how much less each rarer one, and one of nothing that can
- * be seen. */
+/* What a sense counts that those texts do not have, how much less each rarer one, and what cannot be seen. */
 static const double UNSEEN = 0.5, RARER = 0.8, NO_THING = 0.1;
 
 /* A question about a scene looks up thousands of words, each by some twenty seeks. */

@@ -1,5 +1,6 @@
 #include "lift/extent.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "base/quantile.h"
 #include "geom/rotation.h"
@@ -135,9 +136,7 @@ static int by_key(const void *a, const void *b)
 {
 	const struct cell *x = a, *y = b;
 
-	if (x->key != y->key)
-		return x->key < y->key ? -1 : 1;
-	return (x->gaussian > y->gaussian) - (x->gaussian < y->gaussian);
+	return x->key != y->key ? COMPARE(x->key, y->key) : COMPARE(x->gaussian, y->gaussian);
 }
 
 static size_t root(size_t *parent, size_t i)

@@ -5,8 +5,7 @@
  * only the heaviest cluster stays, and those at least EXTENT_PART as heavy. Along a direction the box begins
  * where between EXTENT_TRIM and EXTENT_TAIL of the weight W is passed, and ends likewise, with Gaussians
  * EXTENT_SIGMAS standard deviations long: where W inside / length^EXTENT_THIN is largest, as what makes the
- * box much longer for little weight is of something else. formats/records/boxes.md says how these were
- * chosen. */
+ * box much longer for little weight is of something else (formats/records/boxes.md: why these). */
 #pragma once
 
 #include "base/err.h"

@@ -18,7 +18,6 @@ enum { INSIDE_DIRECTIONS = 102, INSIDE_VOTERS = 3 };
 #define INSIDE_REACH 1.15
 
 /* taken (s->n) is 1 for the thing's own Gaussians, and gets 1 for those inside. x: the thing without strays;
- * most (s->n): splat/visibility.h; others (s->n): what is of other things, or NULL. Returns 0, or -1 with *e
- * set. */
+ * most (s->n): splat/visibility.h; others (s->n): what is of other things, or NULL. 0, or -1 with *e. */
 int inside_take(char *taken, const struct extent *x, const struct splats *s, const float *most,
 	const char *others, struct err *e);

@@ -84,8 +84,7 @@ static void draw_rows(const struct work *work, struct drawn *d, int row, int col
 	}
 }
 
-/* One entry of a tile, by itself so that all of it stays in registers. Returns where the levels of the next
- * begin. */
+/* One entry of a tile, all in registers. Returns where the next one's levels begin. */
 __attribute__((noinline)) static const uint8_t *draw_entry(const struct view_tiles_lookup *of, uint64_t map,
 	const uint8_t *more, double *total, float share, float *place)
 {

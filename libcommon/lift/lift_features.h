@@ -6,8 +6,7 @@
  * reliability: 1 where all views agree, small where they do not.
  *
  * Channels come in blocks, so that memory is bounded by the block's width: for each block all views, in the
- * same order. Weights are summed in the first. Numbers are the same to the bit for any number of threads, and
- * for any blocks. */
+ * same order. Weights are summed in the first. Numbers are the same to the bit for any threads and blocks. */
 #pragma once
 
 #include "base/err.h"

@@ -106,8 +106,7 @@ int lift_objects_settle(struct lift_objects *l, struct err *e);
 /* After the last round, or instead of rounds after lift_objects_view alone, when it finds votes itself: how
  * far each mask of the first `named` objects is what the other views' masks lifted of its object, soft
  * intersection over union of what they show of each Gaussian; the median over the masks that can be compared,
- * NAN where these, *masks, are fewer than LIFT_LEFT_OUT_MASKS. Returns 0, or -1 with *e set for want of
- * memory. */
+ * NAN where these, *masks, are fewer than LIFT_LEFT_OUT_MASKS. 0, or -1 with *e. */
 int lift_left_out(struct lift_objects *l, size_t named, double *agreement, size_t *masks, struct err *e);
 
 /* After the last round: gaussians, objects, confidence, indptr, index and share of a zeroed model, whose

@@ -9,8 +9,7 @@
 int lift_agreement(const struct lift_objects *l, const struct lift_view *v, const struct view_matrix *w,
 	double *agreement, float (*fit)[LIFT_CUTS], struct err *e);
 
-/* l->shares and l->claims of what the views have and vote. Returns 0, or -1 with *e set for want of memory.
- */
+/* l->shares and l->claims of what the views have and vote. 0, or -1 with *e. */
 int lift_shares(struct lift_objects *l, int is_last, struct err *e);
 
 /* Where a view has an object's mask: its row, or v->n. */

@@ -46,8 +46,7 @@ static void sum_weight(
 }
 
 /* The mean of an object's shares over its own weight, which they are divided by: masks that cover a part of
- * it, and Gaussians that reach over its edge, leave all of its shares below 1, and 1 is what its inside
- * should have. */
+ * it, and Gaussians that reach over its edge, leave its shares below 1, which its inside should have. */
 static double find_level(const struct shares *row, const double *weight)
 {
 	double sum = 0, squares = 0;

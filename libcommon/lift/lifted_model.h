@@ -14,8 +14,7 @@ struct lifted {
 	size_t objects;	   /* O */
 	char **names;	   /* (O), different */
 	float *confidence; /* (O) in [0,1]: how well the object's masks agree with what was lifted of them */
-	/* The Gaussians of object o are index[indptr[o]..indptr[o+1]), rising; the others have the share 0.
-	 */
+	/* The Gaussians of object o are index[indptr[o]..indptr[o+1]), rising; others have 0. */
 	int64_t *indptr; /* (O+1) */
 	int32_t *index;	 /* (indptr[O]) */
 	float *share;	 /* (indptr[O]) in (0,1]: part of the Gaussian's weight inside the object's masks */

@@ -1,5 +1,6 @@
 #include "lift/propagate.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "splat/backproject.h"
 
@@ -20,9 +21,7 @@ static int order_places(const void *a, const void *b)
 {
 	const struct place *p = a, *q = b;
 
-	if (p->view != q->view)
-		return p->view < q->view ? -1 : 1;
-	return (p->index > q->index) - (p->index < q->index);
+	return p->view != q->view ? COMPARE(p->view, q->view) : COMPARE(p->index, q->index);
 }
 
 /* Where each object begins: one start for each that begins anywhere. */

@@ -26,7 +26,6 @@ double query_relative_threshold(double threshold, double least, double most);
 
 /* Identities, as Gaussian Grouping (arXiv 2312.00732) picks groups: a label whose Gaussians lie in the
  * query's mask with more than `threshold` of them is selected, here by blend weight. labels (n) with -1 for
- * none; the label 0 is no group. inside (n): 1 for Gaussians in the mask. selected (n); sums (2,label_count)
- * is scratch. */
+ * none; the label 0 is no group. inside (n): 1 in the mask. selected (n); sums (2,label_count) is scratch. */
 void query_identity(const int32_t *labels, const float *weight, const char *inside, size_t n,
 	double threshold, double *sums, size_t label_count, char *selected);

@@ -97,8 +97,7 @@ int regions_init(struct regions *r, const struct pool *p, const size_t *places, 
 void regions_free(struct regions *r);
 
 /* Lifts the candidates of a view, which has these weights; masks of another size are reduced by area. Once a
- * view, in any order, and from many threads at once; the masks of views that are not lifted are left out of
- * all. */
+ * view, in any order, and from many threads at once; masks of other views are left out. */
 int regions_lift(struct regions *r, size_t view, const struct view_matrix *w, struct err *e);
 
 /* Grows the regions, after all views are lifted. */
@@ -112,8 +111,7 @@ void regions_surest_free(struct lift_objects *l);
 /* Gives each object its region, and finds the spare ones, after regions_grow. */
 int regions_assign(struct regions *r, struct err *e);
 
-/* The candidate that shows spare region k in a view, after regions_assign, or NULL; *score is its agreement.
- */
+/* The candidate that shows spare region k in a view, after regions_assign, or NULL; *score: its agreement. */
 const struct mask *regions_spare(const struct regions *r, size_t k, size_t view, double *score);
 
 /* Whether some object's region has to be rendered in a view. */

@@ -1,5 +1,4 @@
-/* What a view has of each Gaussian, kept for those that it sees: a view shows a small part of a large scene.
- */
+/* What a view has of each Gaussian, kept for those that it sees, a small part. */
 #pragma once
 
 #include "base/err.h"
@@ -13,8 +12,7 @@ struct seen {
 	float *weight;	  /* 0, and of those that are seen, by rising number */
 };
 
-/* weight (gaussians): shares_make. Returns 0, or -1 with *e set for want of memory; seen_free after either.
- */
+/* weight (gaussians): shares_make. 0, or -1 with *e; seen_free after either. */
 int seen_make(struct seen *s, const float *weight, size_t gaussians, struct err *e);
 void seen_free(struct seen *s);
 

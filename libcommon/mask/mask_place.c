@@ -40,8 +40,7 @@ static double scaled_pixel(double at, int from, int to)
 	return floor(scaled(at, from, to) + 0.5);
 }
 
-/* left, top, right, bottom of the foreground: its first and last columns and rows. Returns 0 where it is
- * empty. */
+/* left, top, right, bottom of the foreground: its first and last columns and rows; 0: empty. */
 static int bounds(const struct rle *r, double box[4])
 {
 	const size_t height = (size_t)r->height;

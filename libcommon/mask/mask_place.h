@@ -20,8 +20,7 @@ void mask_place_free(struct mask_place *p);
 int mask_place_add_box(struct mask_place *p, const double box[4], struct err *e);
 
 /* Whether a point, in pixels of a mask of height x width, lies in a box of the truth, its edges counting; the
- * box around the truth's mask where `boxes` has none (NULL: none). The point is brought to the truth's size.
- */
+ * box around the truth's mask where `boxes` has none (NULL: none). It is brought to the truth's size. */
 int mask_place_in_box(
 	const double peak[2], int height, int width, const struct rle *truth, const struct mask_place *boxes);
 

@@ -2,7 +2,6 @@
 
 #include "base/utf8.h"
 
-#include <stddef.h>
 #include <string.h>
 
 /* Whether the pixels within `reach` of (row,column) along both axes all have its value. */

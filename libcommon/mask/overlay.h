@@ -13,8 +13,7 @@ void overlay_draw(uint8_t *rgb, const uint8_t *mask, int height, int width);
 enum { CAPTION_GLYPHS = 95, CAPTION_WIDTH = 6, CAPTION_HEIGHT = 10 };
 extern const uint8_t caption_font[CAPTION_GLYPHS][CAPTION_HEIGHT];
 
-/* Pixels that a line of words is high in a picture of that width: a letter is about a hundredth of it wide.
- */
+/* Pixels that a line of words is high in a picture of that width: a letter is a hundredth of it wide. */
 int caption_height(int width);
 
 /* Draws a line of words, UTF-8, white on black over rows top to top + caption_height - 1 of rgb

@@ -34,8 +34,7 @@ static int alloc_runs(struct rle *r, size_t n, int height, int width, struct err
 	return r->runs ? 0 : -1;
 }
 
-/* Columns where a row's foreground differs from that of the row above, rising. Equal words are skipped: most
- * are. */
+/* Columns where a row's foreground differs from that of the row above, rising. Equal words are skipped. */
 static size_t row_changes(const uint8_t *above, const uint8_t *row, size_t width, uint32_t *columns)
 {
 	size_t n = 0, c = 0;
@@ -95,8 +94,7 @@ int rle_encode(struct rle *r, const uint8_t *mask, int height, int width, struct
 	return 0;
 }
 
-/* The changes are marked first, then each row takes over the one above: whole rows at a time, whatever the
- * mask. */
+/* The changes are marked first, then each row takes over the one above: whole rows at a time. */
 void rle_decode(const struct rle *r, uint8_t *mask)
 {
 	size_t h = (size_t)r->height, w = (size_t)r->width;

@@ -1,6 +1,5 @@
 /* Binary masks as COCO run lengths: columns first (Fortran order), runs alternate 0,1,0,... beginning with 0.
- * Positions are p = column * height + row. A mask has at most 2^32 - 1 pixels, so that a run fits its type.
- */
+ * Positions are p = column * height + row. At most 2^32 - 1 pixels, so that a run fits. */
 #pragma once
 
 #include "base/err.h"

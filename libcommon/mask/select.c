@@ -1,7 +1,6 @@
 #include "mask/select.h"
 
-/* Both sums over pixels v come from three areas, since a mask is constant on each of: k only, j only, both.
- */
+/* Both sums over pixels v come from three areas, a mask being constant on each: k only, j only, both. */
 static double agreement(const struct mask *k, size_t k_area, const struct mask *j, size_t j_area, int is_ciou)
 {
 	double g_k = is_ciou ? mask_confidence(k) : 1, g_j = is_ciou ? mask_confidence(j) : 1;

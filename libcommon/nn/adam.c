@@ -9,8 +9,7 @@ struct factors {
 	float decay1, fresh1, decay2, fresh2, size, scale2, eps;
 };
 
-/* The clones give the machine's vector width; every operation is correctly rounded, so they give the same
- * bytes. */
+/* The clones give the machine's vector width; correctly rounded operations give the same bytes. */
 #if defined(__x86_64__) && defined(__GLIBC__)
 __attribute__((target_clones("avx512f", "avx2", "default")))
 #endif

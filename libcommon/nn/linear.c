@@ -49,8 +49,7 @@ static void turn(float *out, size_t width, const float *from, size_t column)
 #endif
 }
 
-/* `terms` rows of b from `first` on, columns column to column+count, as (terms,width) with zeros past count.
- */
+/* `terms` rows of b from `first` on, columns column to column+count, as (terms,width), then zeros. */
 static void pack(float *out, struct linear_matrix b, size_t first, size_t terms, size_t column, size_t count,
 	size_t width)
 {
@@ -74,8 +73,7 @@ static void pack(float *out, struct linear_matrix b, size_t first, size_t terms,
 			out[t * width + j] = 0;
 }
 
-/* A tile at the edge, of rows x columns within c: made whole in buffers, of which the part inside is copied.
- */
+/* A tile at the edge, of rows x columns within c: made in buffers, whose inside is copied. */
 static void run_edge(const struct linear_tile *tile, float *c, size_t stride, const float *start,
 	size_t start_stride, const float *a, size_t row, size_t column, const float *b, size_t terms,
 	size_t rows, size_t columns)

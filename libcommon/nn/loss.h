@@ -8,8 +8,7 @@
  *   max(z,0) + log(1 + exp(-|z|)),  z = -M where the mask is set, M where it is 0,
  * which no finite or infinite logit overflows. logits (n), mask (n) 0 or not 0. dlogits (n), or NULL, becomes
  * scale (sigmoid(M) - y) / n, without the cancellation of sigmoid(M) - 1. n = 0 gives 0. The sum is taken in
- * double, in blocks that depend on n only and are added in order: the bytes do not depend on the number of
- * threads. */
+ * double, in blocks that depend on n only, added in order: the same bytes for any threads. */
 double loss_bce(const float *logits, const uint8_t *mask, size_t n, float scale, float *dlogits);
 
 /* log sum_i exp(x_i) of n > 0 numbers, without overflow. */

@@ -7,8 +7,7 @@
 
 enum { TOGETHER = 4 }; /* sequences whose steps share one reading of the weights */
 
-/* The clones give the machine's vector width; every operation is correctly rounded, so they give the same
- * bytes. */
+/* The clones give the machine's vector width; correctly rounded operations give the same bytes. */
 #if defined(__x86_64__) && defined(__GLIBC__)
 #define CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
@@ -112,8 +111,7 @@ static void open_gates(float *z, const float *cell_before, float *cell, float *h
 	}
 }
 
-/* One step of the sequences from `first` on that have not ended, at most TOGETHER: returns the next sequence.
- */
+/* One step of the sequences from `first` on that go on, at most TOGETHER: returns the next sequence. */
 static int step_forward(const struct lstm *w, const struct lstm_sequences *s, const struct lstm_memory *m,
 	float *out, size_t stride, int step, int first)
 {

@@ -8,8 +8,7 @@
 
 enum { UNICODE_FOLD_MAX = 4 }; /* characters that one may be folded into */
 
-/* Control, format and private-use characters (Cc, Cf, Co) but for tab, line feed and carriage return; U+FFFD.
- */
+/* Control, format and private-use characters (Cc, Cf, Co) but tab, line feed and carriage return; U+FFFD. */
 int unicode_is_dropped(uint32_t c);
 
 /* The property White_Space. */

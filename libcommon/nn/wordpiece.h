@@ -32,8 +32,7 @@ struct vocab {
 	int32_t special[WORDPIECE_SPECIALS]; /* ids; -1 where the vocabulary has none */
 };
 
-/* Adds a token. 0, or -1 with *e set when memory is out, 1 when the token is there already (nothing changes).
- */
+/* Adds a token. 0, or -1 with *e set when memory is out, 1 when the token is there already. */
 int vocab_add(struct vocab *v, const char *token, int32_t id, struct err *e);
 
 /* Sorts the entries by id. */
@@ -59,6 +58,5 @@ struct wordpieces {
 /* Adds one. Returns 0, or -1 with *e when memory is out. */
 int wordpieces_push(struct wordpieces *out, int32_t id, struct err *e);
 
-/* Appends the ids of a text, without [CLS] and [SEP]. Malformed UTF-8 is dropped. -1 only when memory is out.
- */
+/* Appends the ids of a text, without [CLS] and [SEP]. Malformed UTF-8 is dropped. -1: memory is out. */
 int wordpiece_encode(const struct vocab *v, const char *text, struct wordpieces *out, struct err *e);

@@ -4,12 +4,9 @@
 #include "base/mem.h"
 #include "geom/up.h"
 #include "geom/vector.h"
-#include "lang/colours.h"
 #include "lift/extent.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum { POINTS = 2048 }; /* of an object, at most about so many */
 static const double most_weight = 4;

@@ -14,8 +14,7 @@
 struct arranged {
 	int is_there; /* 0: it has no Gaussians, and nothing below means anything */
 	int in_sight; /* 0: the viewpoint is a picture, and the centre is outside of it */
-	/* Axes: 0 to the right, 1 away from the viewer, 2 up; scene units, the origin at the middle of the
-	 * objects. */
+	/* Axes: 0 to the right, 1 away from the viewer, 2 up; scene units, from the objects' middle. */
 	double low[3], high[3]; /* box: places/object_span.h along each axis */
 	double centre[3];	/* of the box */
 	double side;		/* how far right it looks: centre[0], or, in a picture, in perspective */
@@ -43,10 +42,9 @@ struct arrangement {
 };
 
 /* Of the objects of l in the scene that splats and cameras are of, which must outlive it, seen from the usual
- * viewpoint. Only Gaussians that hang together count (lift/extent.h), and none for much more than its
- * fellows do, so that strays and large ones do not decide where an object is. Returns 0, or -1 with *e set
- * and nothing to free.
- */
+ * viewpoint. Only Gaussians that hang together count (lift/extent.h), and none for much more than its fellows
+ * do, so that strays and large ones do not decide where an object is. Returns 0, or -1 with *e set and
+ * nothing to free. */
 int arrangement_make(struct arrangement *a, const struct lifted *l, const struct splats *splats,
 	const struct cameras *cameras, struct err *e);
 

@@ -6,9 +6,6 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdint.h>
-#include <stdlib.h>
-#include <string.h>
 
 enum {
 	ROUNDS = 12,

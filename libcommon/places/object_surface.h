@@ -26,8 +26,7 @@ struct surface {
 int surface_find(
 	struct surface *s, const struct surface_point *points, size_t n, const double up[3], struct err *e);
 
-/* Sets the gloss, where the scene's objects have a view_dependence from low to high: a factor of 2 from the
- * middle is 1. */
+/* Sets the gloss, where the scene's objects have a view_dependence from low to high: 1 is a factor of 2. */
 void surface_set_gloss(struct surface *s, double low, double high);
 
 /* How far a surface has a look (finish_of, lang/finish.h), in [-1,1]; below 0: it has not. */

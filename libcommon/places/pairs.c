@@ -106,8 +106,12 @@ double pair_fits(const struct arrangement *a, enum parse_relation relation, enum
 	case PARSE_NEAR:
 	case PARSE_WITH:
 	case PARSE_BETWEEN: /* of it and what is nothing here */
+	case PARSE_MIDDLE:
+	case PARSE_CORNER:
+	case PARSE_WALL:
 		return near(a, p, q);
 	case PARSE_FAR:
+	case PARSE_ACROSS:
 		return logistic((pair_distance(p, q) / s - far_from) / 0.2);
 	case PARSE_ON:
 		return fmax(pair_stands_on(a, p, q), inside(a, p, q));
@@ -123,12 +127,6 @@ double pair_fits(const struct arrangement *a, enum parse_relation relation, enum
 		loose = logistic((p->low[2] - q->high[2] + 0.1 * s) / (0.03 * s)) *
 			exp(-pair_distance(p, q) / (0.7 * s));
 		return fmax(on_is_above * pair_stands_on(a, p, q), loose);
-	case PARSE_ACROSS:
-		return logistic((pair_distance(p, q) / s - far_from) / 0.2);
-	case PARSE_MIDDLE:
-	case PARSE_CORNER:
-	case PARSE_WALL:
-		return near(a, p, q);
 	default:
 		return 0.5;
 	}

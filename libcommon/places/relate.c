@@ -1,6 +1,5 @@
 #include "places/relate.h"
 
-#include "places/pairs.h"
 #include "base/largest.h"
 #include "base/logistic.h"
 
@@ -196,8 +195,7 @@ static double alone(const struct arrangement *a, enum parse_relation relation, c
 }
 
 /* "large" of a thing that is large for what it may be or for this scene. */
-static void sized(const struct arrangement *a, enum parse_relation relation, const double *fit, double *key,
-	double *out)
+static void sized(const struct arrangement *a, enum parse_relation relation, double *key, double *out)
 {
 	double sum = 0, square = 0, weight = 0;
 
@@ -211,13 +209,10 @@ static void sized(const struct arrangement *a, enum parse_relation relation, con
 	}
 	const double mean = sum / fmax(weight, 1);
 	const double deviation = sqrt(fmax(square / fmax(weight, 1) - mean * mean, 1e-4));
-	(void)fit;
 	for (size_t o = 0; o < a->n; o++)
 		out[o] = logistic(-(key[o] - mean) / (0.5 * deviation) + 0.5);
 }
 
-/* Where nothing is named: "the left one", "on the left" is the leftmost of those that fit or on the left
- * side. */
 /* How far anything else fits as well as object o, or the best. */
 static double rivalry(const struct arrangement *a, const double *fit, size_t o)
 {
@@ -228,11 +223,12 @@ static double rivalry(const struct arrangement *a, const double *fit, size_t o)
 	return fmin(1, most / fmax(fit[o], 1e-12));
 }
 
+/* Where nothing is named: "the left one", "on the left" is leftmost of those that fit or on the left side. */
 static void by_itself(
 	const struct arrangement *a, const struct relation *r, const double *fit, double *key, double *out)
 {
 	if (is_size(r->kind)) {
-		sized(a, r->kind, fit, key, out);
+		sized(a, r->kind, key, out);
 		return;
 	}
 	if (r->kind == PARSE_ON && r->count) { /* on the table itself, rather than on a thing that is on it */
@@ -375,7 +371,7 @@ void relate(
 
 	for (int k = 0; k < r->count; k++)
 		if (!r->anchors[k].is_scene) {
-			named[count ? 1 : 0] = &r->anchors[k];
+			named[count > 0] = &r->anchors[k];
 			count++;
 		}
 	if (!count) {
@@ -384,8 +380,8 @@ void relate(
 			by_itself(a, r, fit, key, out);
 		else
 			relate_rank(a, r->kind, r->place ? r->place : 1, fit, key, out);
-	} else if ((r->kind == PARSE_BETWEEN && (count > 1 || named[0]->is_every)) ||
-		   (r->kind == PARSE_MIDDLE && (count > 1 || named[0]->is_every))) {
+	} else if ((r->kind == PARSE_BETWEEN || r->kind == PARSE_MIDDLE) &&
+		   (count > 1 || named[0]->is_every)) {
 		memset(out, 0, a->n * sizeof *out);
 		between_pairs(a, named[0], named[count > 1], out);
 	} else {

@@ -1,6 +1,5 @@
 /* How well each object fits a relation to others, as people mean it from a viewpoint. Every judgement is a
- * number in [0,1] that changes smoothly with where things are, so that a relation that holds by a hair weighs
- * little. */
+ * number in [0,1] that changes smoothly with where things are, so that what holds by a hair weighs little. */
 #pragma once
 
 #include "places/pairs.h"

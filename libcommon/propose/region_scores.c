@@ -1,5 +1,6 @@
 #include "propose/region_scores.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -38,9 +39,7 @@ static int order_overlaps(const void *a, const void *b)
 {
 	const struct overlap *p = a, *q = b;
 
-	if (p->segment != q->segment)
-		return p->segment < q->segment ? -1 : 1;
-	return (p->node > q->node) - (p->node < q->node);
+	return p->segment != q->segment ? COMPARE(p->segment, q->segment) : COMPARE(p->node, q->node);
 }
 
 /* Sorts overlaps and adds up those of one segment and node. Returns how many are left. */

@@ -1,5 +1,6 @@
 #include "propose/region_tree.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -254,9 +255,7 @@ static int order_ranked(const void *a, const void *b)
 {
 	const struct ranked *p = a, *q = b;
 
-	if (p->score != q->score)
-		return p->score > q->score ? -1 : 1;
-	return (p->node > q->node) - (p->node < q->node);
+	return p->score != q->score ? COMPARE(q->score, p->score) : COMPARE(p->node, q->node);
 }
 
 static int contains(const struct region_tree *t, int32_t a, int32_t b)

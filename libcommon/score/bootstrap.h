@@ -27,7 +27,6 @@ int bootstrap_ratios(struct interval *intervals, const double *sums, size_t n, s
 
 /* Two-sided p of n paired differences having a mean of 0: the share of sign patterns whose sum is at least as
  * far from 0 as the given one. Every pattern of the units that differ is tried where these are no more than
- * the resamples: p is then exact. Else that many random ones are, and the given pattern counts as one more.
- */
+ * the resamples: p is then exact. Else as many random ones are, and the given one. */
 int bootstrap_sign_test(
 	double *p, const double *differences, size_t n, const struct bootstrap *how, struct err *e);

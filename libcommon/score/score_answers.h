@@ -1,7 +1,6 @@
 /* Scoring answers to sentences that may mean one object, several or none: which objects a mask shows, as F1,
  * and whether nothing is answered where nothing is meant. As Multi3DRefer scores (Zhang, Gong, Chang, ICCV
- * 2023), but for masks in views; and the figures of GRES (Liu, Ding, Jiang, CVPR 2023).
- * formats/records/scores.md. */
+ * 2023), but for masks in views; and the figures of GRES (Liu, Ding, Jiang, CVPR 2023). See scores.md. */
 #pragma once
 
 #include "score/score.h"

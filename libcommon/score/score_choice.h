@@ -1,5 +1,4 @@
-/* Which object a prediction shows: choosing the wrong one is another fault than drawing the right one badly.
- */
+/* Which object a prediction shows: choosing wrong is another fault than drawing badly. */
 #pragma once
 
 #include "score/score.h"

@@ -37,8 +37,7 @@ struct score_table {
 	struct score_row *rows; /* owned; the names are others' */
 };
 
-/* Measured pairs after score_sort. Where two predictions are compared `other` is what score_join put beside
- * them. */
+/* Measured pairs after score_sort. Where two predictions are compared `other` is score_join's. */
 struct score_sample {
 	size_t n;
 	const struct score_pair *pairs;

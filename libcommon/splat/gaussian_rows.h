@@ -1,6 +1,5 @@
 /* Gaussians from files of any layout: a reader gives rows of numbers in one order, and what every reader does
- * is done here: activations, leaving out what no scene may have, the offset. formats/splats/ply.md has the
- * rules. */
+ * is done here: activations, leaving out what no scene may have, the offset (formats/splats/ply.md). */
 #pragma once
 
 #include "base/err.h"
@@ -26,8 +25,7 @@ struct rows_report {
 	size_t *dropped;	      /* (not_finite + zero_quat) indices, rising; owned by the caller */
 };
 
-/* Where rows come from. next fills values (ROW_REST + rest) of row `row`; it is called for 0 to n - 1 in
- * order. */
+/* Where rows come from. next fills values (ROW_REST + rest) of row `row`; called for 0 to n - 1 in order. */
 struct gaussian_rows {
 	const char *path; /* as messages name the file */
 	size_t n;	  /* the file has so many: check that before this is used */
@@ -49,11 +47,9 @@ int gaussian_offset(double offset[3], const double *means, size_t n, struct err 
 /* The row of Gaussian i, without an offset; the number of its values. */
 int gaussian_row_of(const struct splats *s, size_t i, double *values);
 
-/* The inverse of the sigmoid. 0 and 1 have none: what is given for these gives them back in single precision.
- */
+/* The inverse of the sigmoid. 0 and 1 have none: what is given gives them back in single precision. */
 double gaussian_logit(double opacity);
 
-/* The harmonics from degree 1 on where the y and z axes, or x and y, are turned round: the sign that each
- * takes. */
+/* The harmonics from degree 1 on where the y and z axes, or x and y, are turned round: each one's sign. */
 enum { FLIP_X = 1, FLIP_Y = 2, FLIP_Z = 4 };
 int gaussian_flip_sign(int coefficient, int axes);

@@ -12,8 +12,7 @@
 #define NEAR_COVERS 0.03 /* of a picture; there, all that hide a view cover 0.4, no thing 0.025 */
 #define NEAR_SAME 5e-4	 /* of all pictures */
 
-/* Depths are counted by the first bits of their floats: by steps of 1/4096. Views count in slabs, side by
- * side. */
+/* Depths are counted by the first bits of their floats: by steps of 1/4096. Views count in slabs. */
 enum { DROPPED_BITS = 11, STEPS = 1 << (31 - DROPPED_BITS), SLABS = 8 };
 
 static double depth(const struct camera *c, const float *mean)

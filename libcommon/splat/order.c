@@ -1,5 +1,6 @@
 #include "splat/order.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "base/threads.h"
 
@@ -47,8 +48,7 @@ static uint32_t digit(uint32_t key, struct digits d, int pass)
 	return (key - d.low) >> d.shift >> (pass * DIGIT_BITS) & (DIGITS - 1);
 }
 
-/* One pass by many threads: each counts and then moves its own stretch of the items. counts (threads,DIGITS).
- */
+/* One pass by many threads: each counts, then moves its own stretch. counts (threads,DIGITS). */
 static void sort_pass(const struct order_item *from, struct order_item *to, size_t n, struct digits d,
 	int pass, uint32_t *counts, int threads)
 {
@@ -85,9 +85,7 @@ static int by_depth(const void *a, const void *b)
 {
 	const struct exact *x = a, *y = b;
 
-	if (x->depth != y->depth)
-		return x->depth < y->depth ? -1 : 1;
-	return (x->item.index > y->item.index) - (x->item.index < y->item.index);
+	return x->depth != y->depth ? COMPARE(x->depth, y->depth) : COMPARE(x->item.index, y->item.index);
 }
 
 static int is_behind(const struct order_item *a, const struct order_item *b, const struct projected *p)

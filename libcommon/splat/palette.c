@@ -5,8 +5,7 @@
 
 #include <math.h>
 
-/* Lloyd's iterations: after these the codes of a real scene move by less than a hundredth of their distance.
- */
+/* Lloyd's iterations: then a real scene's codes move by less than a hundredth of their distance. */
 enum { ITERATIONS = 30, BINS = 4096 };
 
 int palette_code(const double codes[PALETTE_CODES], double value)

@@ -20,8 +20,7 @@ void project_lens_make(struct project_lens *lens, const struct camera *c, double
 			lens->normal[k][i] =
 				a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
 	}
-	/* 1.3 times the half field of view where the principal point is central: 0.3 of it beyond each edge
-	 */
+	/* 1.3 times the half field of view where the principal point is central: 0.3 beyond each edge */
 	lens->low[0] = -c->cx / c->fx - 0.3 * half_x;
 	lens->high[0] = (c->width - c->cx) / c->fx + 0.3 * half_x;
 	lens->low[1] = -c->cy / c->fy - 0.3 * half_y;

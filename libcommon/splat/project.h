@@ -1,5 +1,4 @@
-/* Projection of Gaussians to a view: EWA as in 3DGS (Zwicker et al. 2001; Kerbl et al. 2023, section 4), in
- * double. */
+/* Projection of Gaussians to a view: EWA as in 3DGS (Zwicker et al. 2001; Kerbl et al. 2023), in double. */
 #pragma once
 
 #include "geom/camera.h"
@@ -11,8 +10,7 @@
 
 /* A Gaussian that may touch a pixel, a cache line of it. At (x, y), with dx = x - x_mean and dy = y - y_mean,
  *	u = l11 dx + l21 dy,  v = l22 dy,  a = 2^(log_opacity - u^2 - v^2):
- * a Cholesky factor of the inverse covariance, times log2(e)/2. Unlike the conic it has no cancellation in
- * u^2 + v^2. */
+ * a Cholesky factor of the inverse covariance, times log2(e)/2. u^2 + v^2 has no cancellation. */
 struct projected {
 	double x, y;	      /* mean, pixels */
 	double l11, l21, l22; /* 1/pixels */
@@ -36,8 +34,7 @@ void project_lens_make(struct project_lens *lens, const struct camera *c, double
 enum { PROJECT_LANES = 64 }; /* enough that a lane is in memory when its vector is read */
 
 /* Gaussians side by side; opacities are at least 1/255. Not seen are those with z <= near, those whose
- * ellipse holds no pixel centre, and those whose covariance exceeds double (a standard deviation above 1e75
- * px). */
+ * ellipse holds no pixel centre, and those whose covariance exceeds double. */
 struct project_batch {
 	float mean[3][PROJECT_LANES], scale[3][PROJECT_LANES], quat[4][PROJECT_LANES];
 	float opacity[PROJECT_LANES];

@@ -110,9 +110,7 @@ static void mark_below(float *row, size_t n, int32_t end)
 		row[i] = bits_of(row[i]) < end ? -1 : row[i];
 }
 
-/* Marks what is to go from a row of n weights by -1; returns its sum. `least` is bits; `list` has room for n
- * + 1.
- */
+/* Marks what is to go from a row of n weights by -1; returns its sum. `least` is bits; `list` (n + 1). */
 static float mark_row(float *row, size_t n, double tolerance, int32_t least, uint32_t *list)
 {
 	int32_t begin = 0;

@@ -29,8 +29,7 @@ void render_free(struct render_view *v);
 void render_release(struct render_view **v);
 
 /* The same for another camera, or other splats, in the memory that the view has: fresh memory costs as much
- * as projecting. Returns 0, or -1 with *e set; then the view is good for render_again and render_free only.
- */
+ * as projecting. 0, or -1 with *e; then the view is good for render_again and render_free only. */
 int render_again(struct render_view *v, const struct splats *s, const struct camera *c, struct err *e);
 
 /* Only those tiles where Gaussians with is_wanted[i] (N) may show: values blended there are the same to the
@@ -41,8 +40,7 @@ struct render_view *render_prepare_where(
 int render_again_where(struct render_view *v, const struct splats *s, const struct camera *c,
 	const uint8_t *is_wanted, struct err *e);
 
-/* Bytes that a view of so many Gaussians takes, without its tile lists: those are as long as the Gaussians
- * are large. */
+/* Bytes that a view of so many Gaussians takes, without its tile lists. */
 size_t render_bytes(size_t gaussians);
 
 /* Blend weights, CSR over the P = width*height pixels of the camera. */
@@ -56,8 +54,7 @@ struct render_weights {
 
 /* Arrays are allocated here. Returns 0, or -1 with *e set and nothing to free. */
 int render_weights(const struct render_view *v, struct render_weights *w, struct err *e);
-/* The same in the arrays that *w has from another view, or in new ones where it is zeroed. On failure they
- * are freed. */
+/* The same in the arrays that *w has from another view, or new ones where zeroed. Freed on failure. */
 int render_weights_again(const struct render_view *v, struct render_weights *w, struct err *e);
 /* The same of a part of the view's pixels alone, which then are the rows of the matrix: as large as the
  * processor's cache holds, all that is done with it costs less. x and y are multiples of RENDER_PART; so are

@@ -16,11 +16,9 @@ struct splats {
 	float *sh;	     /* (n,K,3) spherical harmonics, colour channel last */
 };
 
-/* Allocates every array (not initialised); near is SPLATS_NEAR. Returns 0, or -1 with *e set and *s zeroed.
- */
+/* Allocates every array (not initialised); near is SPLATS_NEAR. 0, or -1 with *e and *s zeroed. */
 int splats_alloc(struct splats *s, size_t n, int sh_coefficients, struct err *e);
-/* to: those of `from` where kept (n) is not 0, in their order. Returns 0, or -1 with *e set and *to zeroed.
- */
+/* to: those of `from` where kept (n) is not 0, in their order. 0, or -1 with *e and *to zeroed. */
 int splats_keep(struct splats *to, const struct splats *from, const char *kept, struct err *e);
 /* Frees all that they have but n and the means, where no more is needed. */
 void splats_keep_means(struct splats *s);

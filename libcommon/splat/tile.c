@@ -38,8 +38,7 @@ static double clamp(double x, double low, double high)
 }
 
 /* The ellipse's reach in x over the rows y_low to y_high (offsets from its centre). At height y it spans
- * slope y +- width sqrt(1 - (y/h)^2), h its half height; right is greatest at y = peak and falls away on both
- * sides. */
+ * slope y +- width sqrt(1 - (y/h)^2), h its half height; right is greatest at y = peak. */
 struct ellipse {
 	double slope, width, half_height, peak;
 };

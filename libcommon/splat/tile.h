@@ -17,8 +17,7 @@ struct tile_grid {
 struct tile_grid tile_grid(int width, int height);
 
 /* The tiles of a Gaussian. Up to 2x2, as nearly all are: bits 0 to 11 the first tile row, 12 to 23 the first
- * column, and 24 to 27 which of the four there are, row after row. Else TILE_MANY and a place in tile_spans.
- */
+ * column, and 24 to 27 which of the four there are, in rows. Else TILE_MANY and a place in tile_spans. */
 enum { TILE_COLUMN_BIT = 12, TILE_MASK_BIT = 24 };
 #define TILE_MANY 0x80000000u
 
@@ -35,16 +34,14 @@ struct tile_spans {
 
 enum { TILE_BLOCK = 4096 }; /* Gaussians that share a tile_spans */
 
-/* How many tallies there are for a grid: a tile's each, and some that stay 0, so that neighbours of the last
- * tiles have one. */
+/* How many tallies there are for a grid: a tile's each, and some that stay 0, as neighbours of the last. */
 static inline size_t tile_tallies(const struct tile_grid *g)
 {
 	return (size_t)g->columns * ((size_t)g->rows + 1) + 1;
 }
 
 /* *cover gets that of lane l of a batch: the tiles whose rectangle of pixel centres meets the ellipse a >=
- * 1/255. Adds 1 to tally[t] for each tile t of it, and to `spans` what it needs there. Returns 0, or -1 with
- * *e set. */
+ * 1/255. Adds 1 to tally[t] for each tile t of it, and to `spans` what it needs there. 0, or -1 with *e. */
 int tile_cover(const struct tile_grid *g, const struct project_batch *b, int l, uint32_t *cover,
 	struct tile_spans *spans, uint32_t *tally, struct err *e);
 

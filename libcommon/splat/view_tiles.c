@@ -3,8 +3,6 @@
 #include "base/mem.h"
 #include "splat/view_weights.h"
 
-#include <stdlib.h>
-
 void view_tiles_lookup_make(struct view_tiles_lookup *l, const struct view_tiles *t)
 {
 	for (int k = 0; k < 256; k++)

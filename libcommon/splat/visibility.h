@@ -13,8 +13,7 @@ enum {
 #define VISIBILITY_LEAST 0.1f /* of its opacity a Gaussian in sight has as blend weight in some pixel */
 
 /* most (s->n) gets the largest blend weight of each Gaussian in any pixel. A scene without training views is
- * looked at from all its views; without any, everything is in sight, with a weight of 1. Both return 0, or -1
- * with *e set. */
+ * looked at from all its views; without any, everything is in sight, with a weight of 1. 0, or -1 with *e. */
 int visibility_most(const struct splats *s, const struct cameras *cameras, float *most, struct err *e);
 
 /* in_sight (s->n) gets 0 or 1. */

@@ -9,8 +9,7 @@
 enum { WEIGHTS_STREAMS = 3 };
 extern const char *const weights_stream_name[WEIGHTS_STREAMS];
 
-/* Streams of bytes, compressed by zstd: the Gaussians of each tile, which of its pixels each is in, and by
- * how much. */
+/* Streams of bytes, compressed by zstd: the Gaussians of each tile, its pixels, how much. */
 struct weights_pack {
 	size_t bytes[WEIGHTS_STREAMS], packed[WEIGHTS_STREAMS], room[WEIGHTS_STREAMS]; /* before and after */
 	uint8_t *data[WEIGHTS_STREAMS];

@@ -1,5 +1,4 @@
-/* The other way: the streams are decompressed and checked, and become tiles; these then become rows of
- * pixels. */
+/* The other way: the streams are decompressed and checked, and become tiles; these rows of pixels. */
 #include "splat/weights_pack.h"
 
 #include "base/mem.h"

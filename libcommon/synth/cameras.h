@@ -1,5 +1,4 @@
-/* The cameras of a synthetic scene: someone walks round the front of the table twice, once low and once high.
- */
+/* The cameras of a synthetic scene: someone walks round the table's front twice, low and high. */
 #pragma once
 
 #include "base/err.h"
@@ -8,8 +7,7 @@
 #include "synth/presets.h"
 
 /* o->views views of one size, all looking at the table; split set: of V views the share of the preset is for
- * testing, at least one, spread evenly and the last among them. Returns 0, or -1 with *e set and *c zeroed.
- */
+ * testing, at least one, spread evenly and the last among them. 0, or -1 with *e and *c zeroed. */
 int synth_cameras_make(
 	struct cameras *c, const struct synth_options *o, const struct synth_table *table, struct err *e);
 

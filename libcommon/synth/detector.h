@@ -50,7 +50,6 @@ void synth_detector_make(struct synth_detector *d, const struct synth_object *ob
 
 /* Appends what the detector finds in view number `number` for the first `count` sentences of every object
  * (SYNTH_TRAIN_SENTENCES or SYNTH_SENTENCES), with scores of 0.2 to 0.95, of three decimals. `truth`
- * (n,height,width) is what the objects show there. Depends on the seed and the view alone, not on the order
- * of calls. */
+ * (n,height,width) is what the objects show there. Depends on the seed and the view alone. */
 int synth_detect(struct masks *out, const struct synth_detector *d, int number, const char *view, int count,
 	const uint8_t *truth, int height, int width, struct err *e);

@@ -128,8 +128,7 @@ static void mislead(struct synth_errors *h, int i, const struct synth_object *ob
 	}
 }
 
-/* Of two in five objects most sentences mislead to one and the same other object, of two in five half of
- * them. */
+/* Of two in five objects most sentences mislead to one and the same other object, of two half of them. */
 static void choose_severe(struct synth_errors *h, const struct synth_object *objects, int n,
 	const struct synth_sentence *sentences, struct rng *r)
 {

@@ -88,8 +88,7 @@ static double ratio(struct rng *r, double spread)
 	return exp(spread * fabs(rng_normal(r)));
 }
 
-/* Of those that cover: nearly opaque, and never so long and thin that they leave holes. Some on flat ground
- * are large. */
+/* Of those that cover: nearly opaque, never so thin that they leave holes. Some on flat ground are large. */
 static struct grain covering(double spacing, struct rng *r)
 {
 	double size = 0.66 * spacing * exp(0.15 * rng_normal(r)), aspect = sqrt(fmin(ratio(r, 0.9), 5));
@@ -210,8 +209,7 @@ static void lay(struct work *w, const struct coat *c, struct grain g, double spa
 	put(w, c->owner, mean, &g, tilted, along, rgb, c->gloss);
 }
 
-/* The i-th point of an evenly spread sequence in the unit square (R2, after the plastic number), shaken a
- * little. */
+/* The i-th point of an evenly spread sequence in the unit square (R2, of the plastic number), shaken. */
 static void spread(size_t i, struct rng *r, double *a, double *b)
 {
 	double x = 0.7548776662466927 * (double)(i + 1) + 0.08 * rng_uniform(r) / sqrt((double)(i + 1));

@@ -13,8 +13,7 @@ enum {
 	SYNTH_NAME = 32,
 };
 
-/* Streams of random numbers, one for each purpose, so that (say) more Gaussians leave the sentences as they
- * were. */
+/* Streams of random numbers, one for each purpose, so that more Gaussians leave the sentences as they are. */
 enum synth_stream {
 	SYNTH_STREAM_OBJECTS = 1,
 	SYNTH_STREAM_CAMERAS,

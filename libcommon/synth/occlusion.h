@@ -23,6 +23,5 @@ struct synth_occlusion {
 int synth_occlusion_make(struct synth_occlusion *s, const struct synth_object *objects, int n, struct err *e);
 void synth_occlusion_free(struct synth_occlusion *s);
 
-/* whole (n) gets the cells in which an object lies, visible (n) those in which nothing of another is nearer.
- */
+/* whole (n) gets the cells in which an object lies, visible (n) those where nothing else is nearer. */
 void synth_occlusion_look(struct synth_occlusion *s, const struct camera *c, int *visible, int *whole);

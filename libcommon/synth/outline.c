@@ -18,8 +18,7 @@ size_t synth_outline_area(const uint8_t *mask, size_t pixels)
 	return area;
 }
 
-/* The smallest box that holds the mask, widened by `margin` inside the image; height 0 where the mask is
- * empty. */
+/* The smallest box that holds the mask, widened by `margin` in the image; height 0: empty. */
 static struct box bounds(const uint8_t *mask, int height, int width, int margin)
 {
 	int top = height, bottom = -1, left = width, right = -1;

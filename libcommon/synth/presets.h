@@ -1,5 +1,4 @@
-/* The scenes that gs-synth can make: what is on the table, what the room is like, and how it is photographed.
- */
+/* The scenes that gs-synth can make: the things, the room, and how it is photographed. */
 #pragma once
 
 #include "synth/objects.h"

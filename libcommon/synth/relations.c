@@ -150,8 +150,7 @@ static int compare_size(const struct synth_viewpoint *s, enum parse_relation r, 
 	return sign * verdict(low > size_margin, high < 1 / size_margin);
 }
 
-/* The same for where things are. What is on or under a thing has no distance from it that a person would
- * compare. */
+/* The same for where things are. What is on or under a thing has no distance from it to compare. */
 static int compare_place(const struct synth_viewpoint *s, const struct synth_relation *r, int i, int j)
 {
 	double first, second, least_second = rank_margin;

@@ -1,5 +1,4 @@
-/* What the phrases of a sentence mean among the objects of a scene, with the verdicts of synth/relations.h.
- */
+/* What the phrases of a sentence mean among a scene's objects, by the verdicts of synth/relations.h. */
 #include "base/largest.h"
 #include "synth/sentence.h"
 

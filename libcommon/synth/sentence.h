@@ -1,6 +1,5 @@
 /* A sentence of a synthetic scene: what it says, as phrases and clauses like those of lang/parse.h, and its
- * words. It is first made as phrases and clauses, then judged on the scene's geometry, then put into words.
- */
+ * words. It is first made as phrases and clauses, then judged by geometry, then put into words. */
 #pragma once
 
 #include "base/err.h"

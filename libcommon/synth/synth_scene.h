@@ -1,5 +1,4 @@
-/* A table in a room, with objects, as Gaussians and cameras. Deterministic: the same options give the same
- * scene. */
+/* A table in a room, with objects, as Gaussians and cameras. The same options give the same scene. */
 #pragma once
 
 #include "base/err.h"

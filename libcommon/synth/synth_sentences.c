@@ -79,8 +79,7 @@ static int say_word(struct draft *d, int phrase, char slot, int object)
 	return 0;
 }
 
-/* A short name for an object that no other has: "the red mug", with its size or finish where that helps. The
- * phrase, or -1. */
+/* A short name for an object that no other has: "the red mug", with its size or finish. The phrase, or -1. */
 static int name_anchor(struct draft *d, int object)
 {
 	static const char *const kinds[ANCHOR_TRIES] = {"N", "CN", "CN", "SCN", "FCN", "SFCN"};
