@@ -113,7 +113,7 @@ static int answer_line(const struct cli *c, struct asking *a, const struct quest
 		return 0;
 	}
 	if (q->is_first)
-		*talk = (struct talk){.thing = ASKING_NONE};
+		*talk = (struct talk)TALK_NEW;
 	if (answer(c, a, q->text, talk, &own, e))
 		return -1;
 	*status = *status ? *status : own ? ERR_CHECK : ERR_NONE;
@@ -125,7 +125,7 @@ static int answer_lines(const struct cli *c, struct asking *a, int *status, stru
 {
 	static struct question q[AT_ONCE];
 	static struct questions from = {.fd = STDIN_FILENO};
-	static struct talk talk = {.thing = ASKING_NONE};
+	static struct talk talk = TALK_NEW;
 	int n;
 
 	for (prompt(); (n = take_questions(q, &from, e)) > 0; prompt()) {

@@ -231,7 +231,7 @@ int refersplat_ask(
 		return end(r, -1);
 	r->asking.from =
 		(struct viewpoint){.kind = view ? VIEWPOINT_CAMERA : VIEWPOINT_USUAL, .camera = from};
-	if (asking_ask(&r->asking, q.text, &r->answer, &report_silent, &r->err) || copy_answer(r, answer))
+	if (asking_ask(&r->asking, q.text, 0, &r->answer, &report_silent, &r->err) || copy_answer(r, answer))
 		return end(r, -1);
 	return answer->count ? REFERSPLAT_OK : end(r, err_set(&r->err, ERR_CHECK, "%s", answer->reason));
 }

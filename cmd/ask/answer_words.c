@@ -92,7 +92,8 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 
 static int is_yes_or_no(const struct answer_told *t)
 {
-	return t->asked.kind == QUESTION_THERE || t->asked.kind == QUESTION_WHETHER;
+	return !t->is_unsure && (t->asked.kind == QUESTION_THERE || t->asked.kind == QUESTION_WHETHER ||
+					t->asked.kind == QUESTION_MORE);
 }
 
 int answer_is_no(const struct answer_told *t)
@@ -199,7 +200,9 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 		fputs(a->explained, out);
 	if (a->explained && a->is_by_purpose)
 		fputs("  answered by what the thing is for\n", out);
-	if (is_yes_or_no(t))
+	if (t->is_unsure)
+		put_choice(t, out);
+	else if (is_yes_or_no(t))
 		put_value(t, t->is_yes ? "yes" : "no", out);
 	else if (*t->value)
 		put_value(t, t->value, out);
@@ -207,8 +210,6 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 		fprintf(out, "nothing here is that: %s\n", a->reason);
 	else if (t->asked.kind == QUESTION_DISTANCE)
 		put_distance(t, out);
-	else if (t->is_unsure)
-		put_choice(t, out);
 	else
 		for (size_t k = 0; k < a->count; k++)
 			put_thing(t, a->things[k], out);
@@ -314,7 +315,7 @@ int answer_put_json(const struct answer_told *t, FILE *out, struct err *e)
 		jsontext_string(to, "by", "purpose");
 	if (answer_is_no(t) && *a->reason)
 		jsontext_string(to, "reason", a->reason);
-	if (t->asked.kind == QUESTION_DISTANCE && a->count) {
+	if (t->asked.kind == QUESTION_DISTANCE && a->count == 2) {
 		jsontext_open(to, "distance", '{');
 		put_length(to, "gap", t->distance.gap);
 		put_length(to, "centres", t->distance.centres);

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/cameras/camerafile.h"
+#include "lang/closed.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -127,6 +128,9 @@ void asking_close(struct asking *a)
 	run_folder_free(&a->files);
 }
 
+/* An anchor's noun that is known, and how well another thing fits for which it may be meant as well. */
+static const double known_anchor = 0.5, as_likely = 0.8;
+
 /* What the choice's watch gets to. */
 struct watched {
 	struct asking_answer *answer;
@@ -147,12 +151,52 @@ static void find_holds(const struct meaning *m, double *holds)
 	}
 }
 
+/* "The box", "my red box", but not "a box". */
+static int is_definite(const struct parse *p, const struct parse_phrase *f)
+{
+	static const char articles[] = "the|that|this|my|your|our";
+	int w = f->noun.n ? f->noun.item[0] : -1;
+
+	while (w > 0 && (parse_list_has(&f->attributes, w - 1) || closed_class_of(p, w - 1) == CLOSED_SIZE))
+		w--;
+	return parse_word_is(p, w - 1, articles);
+}
+
+/* What is known of the anchor of a clause; and the two likeliest things that it may be, "the box" among
+ * boxes, where one is as likely as the other. */
+static void find_anchor(const struct meaning *m, struct asking_answer *answer)
+{
+	const struct parse *p = m->sentence->parse;
+	const struct parse_list *clauses = &p->phrases[0].clauses;
+
+	for (int k = 0; k < clauses->n; k++) {
+		const struct parse_clause *c = &p->clauses[clauses->item[k]];
+		const int i = c->anchors.n == 1 ? c->anchors.item[0] : -1;
+		if (i < 0 || p->phrases[i].viewer || meaning_is_scene(m, i))
+			continue;
+		const double there = largest(there_of(m, i), m->arrangement->n);
+		answer->is_anchor_unknown |= fmin(m->known[i], there) < known_anchor;
+		if (p->phrases[i].count != PARSE_ONE || !is_definite(p, &p->phrases[i]) ||
+			answer->is_anchor_unknown)
+			continue;
+		const double *fit = fit_of(m, i);
+		const size_t best = best_of(fit, m->arrangement->n);
+		for (size_t o = 0; o < m->arrangement->n; o++)
+			if (o != best && fit[o] > as_likely * fit[best] &&
+				there_of(m, i)[o] >= known_anchor) {
+				answer->unclear[0] = best;
+				answer->unclear[1] = o;
+			}
+	}
+}
+
 static void watch(void *data, size_t i, const struct meaning *m)
 {
 	struct watched *w = data;
 
 	(void)i;
 	find_holds(m, w->answer->holds);
+	find_anchor(m, w->answer);
 	w->answer->places = m->arrangement;
 	w->answer->words = m->vocabulary;
 	for (size_t o = 0; o < m->arrangement->n; o++)
@@ -166,7 +210,7 @@ static void watch(void *data, size_t i, const struct meaning *m)
 
 int asking_answer_make(struct asking_answer *answer, size_t objects, struct err *e)
 {
-	*answer = (struct asking_answer){.runner_up = ASKING_NONE};
+	*answer = (struct asking_answer){.runner_up = ASKING_NONE, .unclear = {ASKING_NONE, ASKING_NONE}};
 	answer->things = mem_alloc(objects, sizeof *answer->things, "answer", e);
 	answer->probability = mem_zalloc(objects, sizeof *answer->probability, "answer", e);
 	answer->centres = mem_zalloc(objects, sizeof *answer->centres, "answer", e);
@@ -220,15 +264,17 @@ struct choose_sentence asking_sentence(const struct text *t, size_t r, struct vi
 }
 
 /* By sentence r of the text. */
-static int choose_answer(struct asking *a, const struct text *t, size_t r, struct watched *w, struct err *e)
+static int choose_answer(
+	struct asking *a, const struct text *t, size_t r, int is_all, struct watched *w, struct err *e)
 {
 	const size_t objects = a->model.lifted.objects;
-	const struct choose_sentence sentence = asking_sentence(t, r, a->from);
+	struct choose_sentence sentence = asking_sentence(t, r, a->from);
 	const struct choose_watch watching = {w, watch};
 	SCOPED float *probability = mem_alloc(objects, sizeof *probability, "answer", e);
 	SCOPED char *chosen = mem_alloc(objects, 1, "answer", e);
 	struct choice choice;
 
+	sentence.is_all = is_all;
 	if (!probability || !chosen ||
 		choose_with(a->chooser, &sentence, 1, &choice, probability, chosen, &watching, e))
 		return -1;
@@ -274,8 +320,8 @@ static size_t find_ahead(const struct asking *a, const char *question)
 	return r;
 }
 
-int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
-	struct err *e)
+int asking_ask(struct asking *a, const char *question, int is_all, struct asking_answer *answer,
+	const struct report *to, struct err *e)
 {
 	struct watched w = {.answer = answer, .question = question, .options = a->options};
 	SCOPED_BY(encoding_free) struct encoding alone = {0};
@@ -293,7 +339,7 @@ int asking_ask(struct asking *a, const char *question, struct asking_answer *ans
 	}
 	snprintf(answer->reason, sizeof answer->reason, "the %s",
 		text->offsets[r + 1] > text->offsets[r] ? "model has no objects" : "question has no words");
-	if (choose_answer(a, text, r, &w, e))
+	if (choose_answer(a, text, r, is_all, &w, e))
 		return -1;
 	return w.is_out_of_memory ? err_set(e, ERR_SYSTEM, "explanation: out of memory") : 0;
 }

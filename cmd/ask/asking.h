@@ -65,11 +65,13 @@ struct choose_sentence asking_sentence(const struct text *t, size_t r, struct vi
 #define ASKING_NONE ((size_t)-1)
 
 struct asking_answer {
-	size_t count, *things;	     /* the objects that are meant, likeliest first; 0: refused */
-	size_t runner_up;	     /* the likeliest other object; ASKING_NONE */
-	double there;		     /* P that the question means anything that is here */
-	int is_by_purpose;	     /* what the thing is for told */
-	double *probability;	     /* (objects) that each is meant, or one of those meant */
+	size_t count, *things; /* the objects that are meant, likeliest first; 0: refused */
+	size_t runner_up;      /* the likeliest other object; ASKING_NONE */
+	size_t unclear[2];     /* two things of which the question's one anchor may be either; ASKING_NONE */
+	int is_anchor_unknown; /* nothing here is known as what a place is told by */
+	double there;	       /* P that the question means anything that is here */
+	int is_by_purpose;     /* what the thing is for told */
+	double *probability;   /* (objects) that each is meant, or one of those meant */
 	char reason[EXPLAIN_REASON]; /* of a refusal */
 	double (*centres)[3];	     /* (objects) to the right, away and up, as seen from the viewpoint */
 	double *holds; /* (objects) the least that any part of the question but its noun gives the object, in
@@ -84,9 +86,10 @@ struct asking_answer {
  * changes, and nothing is said: what goes wrong is said when the question is asked. */
 void asking_expect(struct asking *a, const char *const *questions, size_t n);
 
-/* Answers a question; warns where it is too long for the encoder. asking_answer_free after either. */
-int asking_ask(struct asking *a, const char *question, struct asking_answer *answer, const struct report *to,
-	struct err *e);
+/* Answers a question; warns where it is too long for the encoder. With is_all, of one thing that is asked for
+ * all that fit are meant. asking_answer_free after either. */
+int asking_ask(struct asking *a, const char *question, int is_all, struct asking_answer *answer,
+	const struct report *to, struct err *e);
 /* An answer of nothing, as asking_ask begins with: 0, or -1 with *e set. asking_answer_free after either. */
 int asking_answer_make(struct asking_answer *answer, size_t objects, struct err *e);
 void asking_answer_free(struct asking_answer *answer);

@@ -49,7 +49,7 @@ __attribute__((format(printf, 3, 4))) static int try(struct trial *t, struct err
 	va_start(args, format);
 	vsnprintf(text, sizeof text, format, args);
 	va_end(args);
-	if (asking_ask(t->asking, text, &a, t->report, e))
+	if (asking_ask(t->asking, text, 0, &a, t->report, e))
 		return -1;
 	const double p = a.count == 1 && a.things[0] == t->object ? a.probability[t->object] : 0;
 	if (p >= least && p > t->best.probability) {

@@ -14,28 +14,32 @@ static int draw(struct answer_told *t, const char *path, struct err *e)
 	return answer_picture(t->asking, t->answer, words, path, &t->drawn, e);
 }
 
-/* The other one of two: the answer less the thing that was answered before. */
-static void take_other(struct asking_answer *found, size_t before)
+static int refuse(struct asking_answer *found, const struct asking *a, struct err *e)
 {
-	if (found->count != 1 || found->things[0] != before || found->runner_up == ASKING_NONE)
-		return;
-	found->things[0] = found->runner_up;
-	found->runner_up = before;
+	if (asking_answer_make(found, a->model.lifted.objects, e))
+		return -1;
+	snprintf(found->reason, sizeof found->reason, "it does not say which thing is meant");
+	return 0;
+}
+
+/* "How tall is it?", and nothing was spoken of. */
+static int is_of_nothing(const struct question_asked *q)
+{
+	const int may_be = q->kind != QUESTION_WHICH && (q->kind != QUESTION_SET || q->relation >= 0);
+	int is = 0;
+
+	for (int k = 0; k < 3 && may_be; k++)
+		is |= talk_points(q->text[k]);
+	return is;
 }
 
 static int answer(struct answer_told *t, struct asking_answer *found, struct asking *a, struct talk *talk,
 	const struct report *to, struct err *e)
 {
-	char *const *names = a->model.lifted.names;
-	const int is_other =
-		talk_understand(talk, names, a->model.lifted.objects, t->question, t->understood);
-
+	talk_understand(talk, a->model.lifted.names, a->model.lifted.objects, t->question, t->understood);
 	question_read(&t->asked, t->understood, 0);
-	if (kinds_answer(t, found, a, to, e))
+	if (is_of_nothing(&t->asked) ? refuse(found, a, e) : kinds_answer(t, found, a, to, e))
 		return -1;
-	if (is_other)
-		take_other(found, talk->thing);
-	t->is_unsure = t->is_unsure && !is_other;
 	if (talk)
 		talk_take(talk, t);
 	return 0;

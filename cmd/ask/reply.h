@@ -50,10 +50,15 @@ struct distance {
 
 /* What a conversation was about last, for words that point back: "it", "the other one", "and the kettle?". */
 struct talk {
-	size_t thing;		      /* the thing that was answered; ASKING_NONE */
+	size_t thing, other;	      /* the thing that was answered, and "the other one"; ASKING_NONE */
+	int is_unsure;		      /* it was asked which of the two is meant */
 	char things[CALLING_TEXT];    /* "the mug and the cup": those of an answer of a few; "": it was one */
 	char question[QUESTION_TEXT]; /* that was asked last, as it was understood; "": none */
 };
+#define TALK_NEW                                                                                             \
+	{                                                                                                    \
+		.thing = ASKING_NONE, .other = ASKING_NONE                                                   \
+	}
 
 /* Answers of refer-ask for a person or a program to read. */
 
@@ -82,10 +87,12 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
  * to fit. */
 void answer_looks(const struct answer_told *t, int is_colour, char *to, size_t room);
 
-/* A question with the things that its words point back to put in their place. 1: it asks for the other one of
- * what was answered last. names (objects). */
-int talk_understand(const struct talk *talk, char *const *names, size_t objects, const char *question,
+/* A question with the things that its words point back to put in their place. names (objects). */
+void talk_understand(const struct talk *talk, char *const *names, size_t objects, const char *question,
 	char understood[QUESTION_TEXT]);
+
+/* Whether words of a text point back to what has to be known from before. */
+int talk_points(const char *text);
 
 /* What is spoken of after an answer. */
 void talk_take(struct talk *talk, const struct answer_told *t);

@@ -151,7 +151,7 @@ static int learn_kind(struct saying *s, const struct synth_row *kind, struct err
 		asking_expect(s->asking, texts, n);
 	for (size_t k = 0; k < n && !bad; k++) {
 		SCOPED_BY(asking_answer_free) struct asking_answer answer = {0};
-		bad = asking_ask(s->asking, texts[k], &answer, &report_silent, e);
+		bad = asking_ask(s->asking, texts[k], 0, &answer, &report_silent, e);
 		if (!bad)
 			memcpy(s->holds + (before + k) * s->objects, answer.holds,
 				s->objects * sizeof *s->holds);
@@ -263,7 +263,7 @@ static int keep(struct saying *s, FILE *out, const struct draft *d, size_t objec
 	const struct lifted *l = &s->asking->model.lifted;
 	char ref[32];
 
-	if (asking_ask(s->asking, d->text, &answer, &report_silent, e))
+	if (asking_ask(s->asking, d->text, 0, &answer, &report_silent, e))
 		return -1;
 	if (answer.count != 1 || answer.things[0] != object ||
 		answer.probability[object] < s->options->least || answer.holds[object] < sure ||

@@ -3,28 +3,41 @@
 #include "cmd/ask/reply.h"
 
 #include "lang/closed.h"
+#include "lang/colours.h"
 #include "lang/tokens.h"
 
 #include <string.h>
 
 enum { FEW = 4 /* things that "they" may be */ };
 
-/* Whether a thing is named in the question before word i, which then points to that. */
-static int is_named_before(const struct tokens *t, int i)
+/* Whether a thing is named in the question before word i, which then points to that: "the plate with nothing
+ * on it", but not "is the plate larger than it?". Its words are *of, up to a pause, where there is one
+ * between. */
+static int is_named_before(const struct tokens *t, int i, struct parse_span *of)
 {
-	int is_definite = 0;
+	static const unsigned clauses = 1U << CLOSED_WITH | 1U << CLOSED_HAVE | 1U << CLOSED_RELATIVE |
+					1U << CLOSED_NEGATION | 1U << CLOSED_CONJUNCTION;
+	int is_definite = 0, is = 0, begin = 0, is_clause = 0;
 
+	*of = (struct parse_span){0};
 	for (int k = 0; k < i; k++) {
 		const int class = tokens_class(t, k);
-		if (class == CLOSED_DETERMINER)
+		is_clause |= is && class >= 0 && clauses >> class & 1;
+		if (is && t->word[k].before && !of->end)
+			*of = (struct parse_span){t->word[begin].span.begin, t->word[k - 1].span.end};
+		if (!is && class == CLOSED_DETERMINER) {
 			is_definite = 1;
-		else if (class < 0 && is_definite)
-			return 1;
-		else if (class >= 0 && class != CLOSED_SIZE && class != CLOSED_ATTRIBUTE &&
-			 class != CLOSED_ORDINAL)
+			begin = k;
+		} else if ((class < 0 || tokens_is(t, k, "one")) && is_definite) {
+			is = 1;
+		} else if (class >= 0 && class != CLOSED_SIZE && class != CLOSED_ATTRIBUTE &&
+			   class != CLOSED_ORDINAL) {
 			is_definite = 0;
+		}
 	}
-	return 0;
+	if (is && t->word[i].before && !of->end)
+		*of = (struct parse_span){t->word[begin].span.begin, t->word[i - 1].span.end};
+	return is && (is_clause || of->end);
 }
 
 /* The words of a name but for numbers; with is_noun the last of them alone. */
@@ -68,87 +81,115 @@ struct pointed {
 	int end;			 /* the word behind it */
 };
 
-static struct pointed points_to(
-	const struct tokens *t, int i, const struct talk *talk, const char *name, const char *noun)
+/* What words of a question may point to; "" where there is no such thing. */
+struct referents {
+	char name[CALLING_TEXT], other[CALLING_TEXT];
+	const char *things;
+	char noun[CALLING_TEXT], kind[CALLING_TEXT]; /* of "the left one", and of "the red one" */
+};
+
+static struct pointed point(const char *article, const char *to, const char *tail, int end)
 {
-	const int is_one = tokens_is(t, i + 1, "one|thing");
+	return (struct pointed){article, to, tail, end};
+}
+
+/* "the other one", "that one", "the two": how many words from word i on are the whole of that. */
+static int other_length(const struct tokens *t, int i)
+{
+	const int from = tokens_is(t, i, "the") ? i + 1 : i;
+
+	if (!tokens_is(t, from, "other") && (from > i || !tokens_is(t, from, "another")))
+		return 0;
+	const int class = tokens_class(t, from + 1);
+	const int is_one = tokens_is(t, from + 1, "one") || tokens_is(t, from + 1, "thing");
+	return is_one || (class != CLOSED_GENERIC && class >= 0) || from + 1 == t->n ? from + 1 + is_one - i
+										     : 0;
+}
+
+static int two_length(const struct tokens *t, int i)
+{
+	static const char those[] = "the|those|these";
+	static const char them[] = "them";
+	const int is_two = tokens_is(t, i, those) && tokens_is(t, i + 1, "two");
+
+	if (!is_two || (i + 2 < t->n && tokens_class(t, i + 2) < 0))
+		return 0;
+	return tokens_is(t, i + 2, "of") && tokens_is(t, i + 3, them) ? 4 : 2;
+}
+
+/* Whether the word before "one" says a look, by which another thing of the kind is meant. */
+static int says_look(const struct tokens *t, int i)
+{
+	return tokens_class(t, i - 1) == CLOSED_ATTRIBUTE || colour_word(t->word[i - 1].text) >= 0;
+}
+
+/* ", isn't it?": nothing but such words since a pause. */
+static int is_tag(const struct tokens *t, int i)
+{
+	static const unsigned words = 1U << CLOSED_BE | 1U << CLOSED_NEGATION | 1U << CLOSED_AUXILIARY;
+	int k = i;
+
+	while (k > 0 && !t->word[k].before && tokens_class(t, k - 1) >= 0 &&
+		words >> tokens_class(t, k - 1) & 1)
+		k--;
+	return i + 1 == t->n && k < i && t->word[k].before;
+}
+
+/* topic is where a thing is written that the question begins with: "the mug, how tall is it?" */
+static struct pointed points_to(const struct tokens *t, int i, const struct referents *r,
+	char topic[CALLING_TEXT], const char *question)
+{
+	static const char it[] = "it|him|her|he|she";
+	static const char that[] = "that|this";
+	static const char those[] = "they|them|those|these";
+	struct parse_span of;
+	const int is_one = tokens_is(t, i + 1, "one") || tokens_is(t, i + 1, "thing");
 	const int class = tokens_class(t, i + 1), before = i ? tokens_class(t, i - 1) : CLOSED_CONJUNCTION;
 	/* behind a noun, as of "everything that is red", a clause begins */
-	const int may_stand =
-		before == CLOSED_CONJUNCTION || before == CLOSED_BE || before == CLOSED_PREPOSITION;
+	const int may_stand = before == CLOSED_CONJUNCTION || before == CLOSED_BE ||
+			      before == CLOSED_PREPOSITION || before == CLOSED_PLACE;
 	const int is_end =
 		i + 1 == t->n || (may_stand && (class == CLOSED_BE || class == CLOSED_CONJUNCTION));
 
-	if (is_named_before(t, i))
-		return (struct pointed){.end = i + 1};
-	if (tokens_is(t, i, "its"))
-		return (struct pointed){"the ", name, "'s", i + 1};
-	if (tokens_is(t, i, "it|him|her"))
-		return (struct pointed){"the ", name, "", i + 1};
-	if (tokens_is(t, i, "that|this") && (is_one || is_end))
-		return (struct pointed){"the ", name, "", i + 1 + is_one};
-	if (*talk->things && tokens_is(t, i, "they|them|those|these") &&
-		(is_end || class == CLOSED_NUMBER || tokens_is(t, i, "they")))
-		return (struct pointed){"", talk->things, "", i + 1 + (class == CLOSED_NUMBER)};
-	if (*noun && i && tokens_is(t, i, "one"))
-		return (struct pointed){"", noun, "", i + 1};
-	return (struct pointed){.end = i + 1};
-}
-
-/* "no, the other one", "not that one": asks for another thing than the last. */
-static int is_other(const struct tokens *t)
-{
-	static const char words[] =
-		"no|nope|not|the|that|this|it|i|mean|meant|other|one|another|thing|wrong|'s|n't|and|what|"
-		"about";
-	int is = 0;
-
-	for (int i = 0; i < t->n; i++) {
-		if (!tokens_is(t, i, words))
-			return 0;
-		is |= tokens_is(t, i, "other|another|not|n't");
+	if (other_length(t, i) && *r->other)
+		return point("the ", r->other, "", i + other_length(t, i));
+	if (two_length(t, i) && *r->things)
+		return point("", r->things, "", i + two_length(t, i));
+	if (is_named_before(t, i, &of)) {
+		snprintf(topic, CALLING_TEXT, "%.*s", of.end - of.begin, question + of.begin);
+		const int is_topic =
+			!is_tag(t, i) && (tokens_is(t, i, it) || (tokens_is(t, i, that) && is_end));
+		return (struct pointed){"", is_topic && of.end ? topic : NULL, "", i + 1};
 	}
-	return is;
-}
-
-/* Where the thing begins of "and the kettle?", "what about the kettle?"; 0: it is none of these. */
-static int find_again(const struct tokens *t)
-{
-	const int about = tokens_is(t, 1, "about") && tokens_is(t, 0, "what|how");
-	const int from = about ? 2 : tokens_is(t, 0, "and");
-
-	return from && from < t->n && tokens_class(t, from) == CLOSED_DETERMINER ? from : 0;
-}
-
-/* The last question of the thing that this one names. */
-static int ask_again(const struct talk *talk, const char *thing, char understood[QUESTION_TEXT])
-{
-	struct question_asked last;
-
-	question_read(&last, talk->question, 0);
-	const char *at = last.kind == QUESTION_WHICH ? NULL : strstr(talk->question, last.text[0]);
-	if (!at || !strcmp(last.text[0], talk->question))
-		return snprintf(understood, QUESTION_TEXT, "%s", thing);
-	return snprintf(understood, QUESTION_TEXT, "%.*s%s%s", (int)(at - talk->question), talk->question,
-		thing, at + strlen(last.text[0]));
+	if (tokens_is(t, i, "its"))
+		return point("the ", r->name, "'s", i + 1);
+	if (tokens_is(t, i, it))
+		return point("the ", r->name, "", i + 1);
+	if (tokens_is(t, i, that) && (is_one || is_end))
+		return point("the ", r->name, "", i + 1 + is_one);
+	if (*r->things && tokens_is(t, i, those) &&
+		(is_end || class == CLOSED_NUMBER || tokens_is(t, i, "they")))
+		return point("", r->things, "", i + 1 + (class == CLOSED_NUMBER));
+	const char *noun = i && tokens_is(t, i, "one") ? (says_look(t, i) ? r->kind : r->noun) : "";
+	return (struct pointed){.article = "", .to = *noun ? noun : NULL, .tail = "", .end = i + 1};
 }
 
 /* The question with what its words point back to in their place. */
-static void put_pointed(const struct talk *talk, char *const *names, size_t objects, const char *question,
-	char understood[QUESTION_TEXT])
+static void put_pointed(const struct referents *r, const char *question, char understood[QUESTION_TEXT])
 {
-	char noun[CALLING_TEXT];
+	char topic[CALLING_TEXT];
+	struct question_asked q;
 	struct tokens t;
 	size_t n = 0;
 	int from = 0;
 
 	*understood = 0;
+	question_read(&q, question, 0);
 	tokens_take(&t, question, NULL, NULL, 0);
-	find_shared(names, objects, talk->thing, noun);
 	for (int i = 0, end; i < t.n && n < QUESTION_TEXT; i = end) {
-		const struct pointed p = points_to(&t, i, talk, names[talk->thing], noun);
+		const struct pointed p = points_to(&t, i, r, topic, question);
 		end = p.end;
-		if (!p.to)
+		if (!p.to || !*p.to || (p.to == topic && q.kind == QUESTION_WHICH))
 			continue;
 		n += (size_t)snprintf(understood + n, QUESTION_TEXT - n, "%.*s%s%s%s",
 			t.word[i].span.begin - from, question + from, p.article, p.to, p.tail);
@@ -158,24 +199,174 @@ static void put_pointed(const struct talk *talk, char *const *names, size_t obje
 		snprintf(understood + n, QUESTION_TEXT - n, "%s", question + from);
 }
 
-int talk_understand(const struct talk *talk, char *const *names, size_t objects, const char *question,
-	char understood[QUESTION_TEXT])
+int talk_points(const char *question)
 {
-	char again[QUESTION_TEXT];
+	const struct referents nothing = {.things = ""};
+	char topic[CALLING_TEXT];
 	struct tokens t;
 
-	snprintf(understood, QUESTION_TEXT, "%s", question);
-	if (!talk || !*talk->question || talk->thing == ASKING_NONE)
-		return 0;
 	tokens_take(&t, question, NULL, NULL, 0);
-	if (is_other(&t))
-		return snprintf(understood, QUESTION_TEXT, "%s", talk->question) > 0;
-	if (find_again(&t))
-		ask_again(talk, question + t.word[find_again(&t)].span.begin, again);
-	else
-		memcpy(again, understood, sizeof again);
-	put_pointed(talk, names, objects, again, understood);
+	for (int i = 0; i < t.n; i++)
+		if (points_to(&t, i, &nothing, topic, question).to)
+			return 1;
 	return 0;
+}
+
+/* "no, the other one", "not that one": the words up to a pause that ask for another thing than the last; 0
+ * where there are none. */
+static int is_other(const struct tokens *t)
+{
+	static const char words[] =
+		"no|nope|not|the|that|this|it|i|mean|meant|other|one|another|thing|wrong|'s|n't|and|what|about";
+	int is = 0, i = 0;
+
+	for (; i < t->n && (!is || !t->word[i].before); i++) {
+		if (!tokens_is(t, i, words))
+			return 0;
+		is |= tokens_is(t, i, "other") || tokens_is(t, i, "another") || tokens_is(t, i, "not") ||
+		      tokens_is(t, i, "n't");
+	}
+	while (is && i < t->n && !t->word[i].before)
+		i++;
+	return is ? i : 0;
+}
+
+/* Where the thing begins of "and the kettle?", "what about the kettle?", or of a reply to what was asked
+ * back; -1: it is none of these. */
+static int find_again(const struct talk *talk, const struct tokens *t, const char *question)
+{
+	static const unsigned begins = 1U << CLOSED_DETERMINER | 1U << CLOSED_ATTRIBUTE | 1U << CLOSED_SIZE |
+				       1U << CLOSED_PLACE | 1U << CLOSED_GENERIC;
+	const int about = tokens_is(t, 1, "about") && (tokens_is(t, 0, "what") || tokens_is(t, 0, "how"));
+	const int is_and = tokens_is(t, 0, "and"), from = about ? 2 : is_and;
+	const int class = from < t->n ? tokens_class(t, from) : CLOSED_BE;
+	struct question_asked q;
+
+	question_read(&q, question, 0);
+	const int may_begin = class < 0 || (begins >> class & 1);
+	return q.kind == QUESTION_WHICH && may_begin && (about || is_and || talk->is_unsure) ? from : -1;
+}
+
+/* The last question of the thing that this one names. *noun becomes that of the thing that it was about. */
+static void ask_again(
+	const struct talk *talk, const char *thing, char understood[QUESTION_TEXT], char noun[TOKEN_LENGTH])
+{
+	struct question_asked last;
+	struct tokens t;
+	int begin;
+
+	*noun = 0;
+	question_read(&last, talk->question, 0);
+	begin = last.about.begin;
+	snprintf(understood, QUESTION_TEXT, "%s", thing);
+	if (last.kind == QUESTION_WHICH || last.about.end <= begin)
+		return;
+	char *const about = understood; /* for a while */
+	snprintf(about, QUESTION_TEXT, "%.*s", last.about.end - begin, talk->question + begin);
+	question_noun(about, noun);
+	/* "left of the mug" becomes "left of the kettle", but "on the mug" becomes "under the kettle" */
+	tokens_take(&t, thing, NULL, NULL, 0);
+	const int is_place = t.n && tokens_class(&t, 0) == CLOSED_PLACE;
+	tokens_take(&t, about, NULL, NULL, 0);
+	for (int i = 0; i < t.n && !is_place && tokens_class(&t, 0) == CLOSED_PLACE; i++)
+		if (tokens_class(&t, i) == CLOSED_DETERMINER) {
+			begin += t.word[i].span.begin;
+			break;
+		}
+	snprintf(understood, QUESTION_TEXT, "%.*s%s%s", begin, talk->question, thing,
+		talk->question + last.about.end);
+}
+
+/* What to call a thing that has its number: "mug 1" beside "mug 2". */
+static void find_name(char *const *names, size_t objects, size_t thing, char name[CALLING_TEXT])
+{
+	const size_t n = thing == ASKING_NONE ? 0 : strlen(names[thing]);
+	int has_other = 0;
+
+	for (size_t o = 0; o < objects && n; o++)
+		has_other |= !strncmp(names[o], names[thing], n) && names[o][n] == ' ' &&
+			     names[o][n + 1 + strspn(names[o] + n + 1, "0123456789")] == 0;
+	snprintf(name, CALLING_TEXT, "%s%s", n ? names[thing] : "", has_other ? " 1" : "");
+}
+
+void talk_understand(const struct talk *talk, char *const *names, size_t objects, const char *question,
+	char understood[QUESTION_TEXT])
+{
+	static const char the_other[] = "the other one";
+	struct referents r = {.things = talk ? talk->things : ""};
+	char again[QUESTION_TEXT], noun[TOKEN_LENGTH] = "";
+	struct tokens t;
+
+	tokens_take(&t, question, NULL, NULL, 0);
+	if (!talk || !*talk->question || talk->thing == ASKING_NONE) {
+		put_pointed(&r, question, understood);
+		return;
+	}
+	find_name(names, objects, talk->thing, r.name);
+	find_name(names, objects, talk->other, r.other);
+	find_shared(names, objects, talk->thing, r.noun);
+	find_words(names[talk->thing], 1, r.kind);
+	const int other = is_other(&t), thing = find_again(talk, &t, question);
+	snprintf(again, sizeof again, "%s", question);
+	if (other == t.n) {
+		ask_again(talk, the_other, again, noun);
+	} else if (other) {
+		if (*r.other)
+			memcpy(r.name, r.other, sizeof r.name);
+		snprintf(again, sizeof again, "%s", question + t.word[other].span.begin);
+	} else if (thing >= 0) {
+		ask_again(talk, question + t.word[thing].span.begin, again, noun);
+	}
+	if (*noun) {
+		snprintf(r.noun, sizeof r.noun, "%s", noun);
+		snprintf(r.kind, sizeof r.kind, "%s", noun);
+	}
+	put_pointed(&r, again, understood);
+}
+
+/* The one thing of a kind besides it, or else the likeliest other one. */
+static size_t find_other(const struct answer_told *t, size_t thing)
+{
+	char *const *names = t->asking->model.lifted.names;
+	char own[CALLING_TEXT], words[CALLING_TEXT];
+	size_t other = ASKING_NONE;
+	int n = 0;
+
+	for (int is_noun = 0; is_noun < 2 && n != 1; is_noun++) {
+		find_words(names[thing], is_noun, own);
+		n = 0;
+		for (size_t o = 0; o < t->asking->model.lifted.objects; o++) {
+			find_words(names[o], is_noun, words);
+			if (o == thing || strcmp(own, words) != 0)
+				continue;
+			other = o;
+			n++;
+		}
+	}
+	return n == 1 ? other : t->answer->runner_up;
+}
+
+/* "the mug and the cup": of an answer of a few, and of a question about two. */
+static void take_things(struct talk *talk, const struct answer_told *t)
+{
+	const struct asking_answer *a = t->answer;
+	const int kind = t->asked.kind;
+
+	*talk->things = 0;
+	if (kind == QUESTION_WHETHER || kind == QUESTION_MORE || kind == QUESTION_COMPARE) {
+		const char *second = t->asked.text[1];
+		const char *at = kind == QUESTION_WHETHER ? strstr(second, " the ") : second;
+		const size_t length = strlen(t->asked.text[0]);
+		if (kind == QUESTION_WHETHER && !strncmp(second, t->asked.text[0], length))
+			at = strstr(second + length, " the ");
+		if (at && length + strlen(at) + 8 < sizeof talk->things)
+			snprintf(talk->things, CALLING_TEXT, "%.100s and %.100s", t->asked.text[0],
+				at + (*at == ' '));
+		return;
+	}
+	for (size_t k = 0, n = 0; k < a->count && a->count > 1 && a->count <= FEW && n < CALLING_TEXT; k++)
+		n += (size_t)snprintf(talk->things + n, CALLING_TEXT - n, "%sthe %s", k ? " and " : "",
+			t->asking->model.lifted.names[a->things[k]]);
 }
 
 void talk_take(struct talk *talk, const struct answer_told *t)
@@ -184,10 +375,16 @@ void talk_take(struct talk *talk, const struct answer_told *t)
 
 	if (!a->count)
 		return;
-	talk->thing = a->things[0];
-	*talk->things = 0;
-	for (size_t k = 0, n = 0; k < a->count && a->count > 1 && a->count <= FEW && n < CALLING_TEXT; k++)
-		n += (size_t)snprintf(talk->things + n, CALLING_TEXT - n, "%sthe %s", k ? " and " : "",
-			t->asking->model.lifted.names[a->things[k]]);
+	const size_t thing = a->things[0], before[2] = {talk->thing, talk->other};
+	const int was_unsure = talk->is_unsure;
+	talk->thing = thing;
+	talk->is_unsure = t->is_unsure;
+	talk->other = a->count == 2	   ? a->things[1]
+		      : t->is_unsure	   ? a->runner_up
+		      : !was_unsure	   ? find_other(t, thing)
+		      : thing == before[0] ? before[1]
+		      : thing == before[1] ? before[0]
+					   : find_other(t, thing);
+	take_things(talk, t);
 	memcpy(talk->question, t->understood, sizeof talk->question);
 }

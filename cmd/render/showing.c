@@ -92,7 +92,7 @@ int showing_ask(const struct asking_options *o, const char *question, enum locat
 	char caption[256];
 	size_t taken = 0;
 
-	if (file_out_probe(path, e) || asking_open(&a, o, e) || asking_ask(&a, question, &found, to, e))
+	if (file_out_probe(path, e) || asking_open(&a, o, e) || asking_ask(&a, question, 0, &found, to, e))
 		return -1;
 	answer_caption(&told, caption, sizeof caption);
 	if (!found.count)

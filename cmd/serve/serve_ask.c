@@ -32,7 +32,7 @@ static struct talk *find_talk(struct serving *s, const char *name)
 			least = t;
 	}
 	if (!least->used || strcmp(least->name, name) != 0) {
-		*least = (struct serving_talk){.talk = {.thing = ASKING_NONE}};
+		*least = (struct serving_talk){.talk = TALK_NEW};
 		snprintf(least->name, sizeof least->name, "%s", name);
 	}
 	least->used = ++s->used;
@@ -82,7 +82,7 @@ static int answer(struct serving *s, void *data, struct err *e)
 
 	if (!*q->question.text && !q->point && !q->box) {
 		if (talk)
-			*talk = (struct talk){.thing = ASKING_NONE};
+			*talk = (struct talk)TALK_NEW;
 		*q->to = (struct serving_reply){"application/json", mem_strdup("{}\n", e), 3};
 		return q->to->bytes ? 0 : -1;
 	}

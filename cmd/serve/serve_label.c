@@ -225,7 +225,7 @@ static void move_talks(struct serving *s, const struct lifted *before, const str
 			continue;
 		t->talk.thing = serving_thing(now, before->names[t->talk.thing]);
 		if (t->talk.thing == ASKING_NONE)
-			t->talk = (struct talk){.thing = ASKING_NONE};
+			t->talk = (struct talk)TALK_NEW;
 	}
 }
 

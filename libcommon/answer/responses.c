@@ -128,7 +128,7 @@ static int find_meant(struct meant *m, struct responses *a, const struct lifted 
 		const size_t r = q->which[i], at = (size_t)q->offsets[r] * (size_t)l->width;
 		m->sentences[i] = (struct choose_sentence){q->texts[r], q->pieces[r], q->words + at,
 			q->middle ? q->middle + at : NULL, (size_t)(q->offsets[r + 1] - q->offsets[r]),
-			q->from ? q->from[i] : (struct viewpoint){.kind = VIEWPOINT_USUAL}, NULL};
+			q->from ? q->from[i] : (struct viewpoint){.kind = VIEWPOINT_USUAL}, NULL, 0};
 	}
 	if (choose(&scene, m->sentences, q->count, parts, m->choices, m->probability, m->chosen, NULL, e))
 		return -1;

@@ -135,8 +135,9 @@ static void choose_whole(struct chooser *c, double *row, char *chosen)
 }
 
 /* A sentence that says what a thing is for: the object of which that is most likely; several: and what
- * is nearly as likely. */
-static void choose_purpose(struct chooser *c, int several, struct choice *to, double *row, char *chosen)
+ * is nearly as likely; is_all: and what is for the same. */
+static void choose_purpose(
+	struct chooser *c, int several, int is_all, struct choice *to, double *row, char *chosen)
 {
 	const size_t n = c->arrangement.n;
 	const double there = usage_judge(&c->meaning, c->score, c->purpose);
@@ -147,11 +148,17 @@ static void choose_purpose(struct chooser *c, int several, struct choice *to, do
 	softmax(row, n);
 	memset(chosen, 0, n);
 	const size_t best = best_of(row, n);
-	for (size_t o = 0; o < n; o++)
-		chosen[o] = o == best || (several && c->score[o] > c->score[best] - PURPOSE_SEVERAL);
+	/* all that are for the same, whatever they are called */
+	const double *use = c->purpose + n, *parts = use + n;
+	for (size_t o = 0; o < n; o++) {
+		const double less = fabs(PURPOSE_USE * (use[best] - use[o])) + fabs(parts[best] - parts[o]);
+		chosen[o] =
+			o == best || (several && c->score[o] > c->score[best] - PURPOSE_SEVERAL) ||
+			((several || is_all) && c->arrangement.objects[o].is_there && less < PURPOSE_SAME);
+	}
 	to->there = there;
 	to->is_by_purpose = 1;
-	to->is_several = several;
+	to->is_several = several || is_all;
 }
 
 /* Where a sentence says that it is said, if that is told by things that are here: "when facing the window",
@@ -197,6 +204,11 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 
 	if (!from->parse && parse_sentence(own, &c->parser, from->text, &vectors, e))
 		return -1;
+	const int is_all = from->is_all && own->phrases && own->phrases[0].count == PARSE_ONE;
+	if (is_all) {
+		own->phrases[0].count = PARSE_ALL;
+		own->phrases[0].group = 0;
+	}
 	*s = (struct vocabulary_sentence){p, from->vectors, from->words};
 	if (judge_sentence(&c->meaning, s, e))
 		return -1;
@@ -216,7 +228,7 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 		to->there < PARSE_LEAST || (!target->noun.n && !usage_says_more(&c->meaning));
 	if (has(c, CHOOSE_PURPOSE) && may_be_purpose && !target->also.n && !target->except.n &&
 		!target->ordinal && target->count <= PARSE_ONE)
-		choose_purpose(c, target->count == PARSE_ALL, to, row, chosen);
+		choose_purpose(c, target->count == PARSE_ALL && !is_all, is_all, to, row, chosen);
 	return 0;
 }
 

@@ -47,6 +47,7 @@ struct choose_sentence {
 	size_t words;
 	struct viewpoint from;	   /* unless it says itself from where: "when facing the kettle" */
 	const struct parse *parse; /* NULL: not known, the text is parsed */
+	int is_all;		   /* with no parse: of one thing that is said all that fit are meant */
 };
 
 struct choose_scene {

@@ -179,7 +179,7 @@ static int settle(struct lifted *l, size_t named, const char *is_fixed, const st
 	for (size_t r = 0; r < l->sentences && !bad; r++)
 		sentences[r] = (struct choose_sentence){l->texts[r], l->pieces[r],
 			l->words + (size_t)l->offsets[r] * width, lifted_middle(l, r),
-			(size_t)(l->offsets[r + 1] - l->offsets[r]), {.kind = VIEWPOINT_USUAL}, NULL};
+			(size_t)(l->offsets[r + 1] - l->offsets[r]), {.kind = VIEWPOINT_USUAL}, NULL, 0};
 	for (int round = 0; round < ROUNDS && changes && !bad; round++) {
 		bad = judge(l, named, is_fixed, scene, sentences, choices, probability, chosen, value, e) ||
 		      assignment_best(value, n, n, next, e);

@@ -99,6 +99,28 @@ static int judge_last(struct meaning *m, const struct parse_phrase *f, int head,
 	return next;
 }
 
+/* "Mug 2" is the one of that name, where there is one, and "mug 1" the one whose name has no number. */
+static void judge_number(const struct meaning *m, int head, double *match)
+{
+	const struct parse *p = m->sentence->parse;
+	const char *number = head + 1 < p->word_count ? p->words[head + 1].text : "";
+	const double best = largest(match, objects_of(m));
+	int is_there = 0;
+
+	if (!*number || number[strspn(number, "0123456789")])
+		return;
+	for (int turn = 0; turn < 2; turn++)
+		for (size_t o = 0; o < objects_of(m); o++) {
+			const char *name = m->vocabulary->lifted->names[o], *end = strrchr(name, ' ');
+			const int is_plain = !end || end[1 + strspn(end + 1, "0123456789")];
+			const int is = is_plain ? !strcmp(number, "1") : !strcmp(end + 1, number);
+			if (!turn)
+				is_there |= is && match[o] >= 0.5 * best;
+			else if (is_there && !is)
+				match[o] *= NUMBER_ELSE;
+		}
+}
+
 void judge_noun(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
@@ -114,8 +136,11 @@ void judge_noun(struct meaning *m, int phrase)
 	m->known[phrase] = GENERIC_THERE;
 	if (head < 0)
 		return;
+	m->vocabulary->of_several = f->count != PARSE_ONE;
 	vocabulary_noun(m->vocabulary, m->sentence, head, match);
+	m->vocabulary->of_several = 0;
 	head = judge_last(m, f, head, match);
+	judge_number(m, head, match);
 	for (size_t o = 0; o < n && m->naming != 1; o++) /* those that are not found yet are no anchors */
 		match[o] *= m->arrangement->objects[o].is_there;
 	const int is_any = is_vague(&p->words[head]) || (is_shape(p, f, head) && largest(match, n) < 0.5);
@@ -126,16 +151,17 @@ void judge_noun(struct meaning *m, int phrase)
 		return;
 	}
 	if (largest(match, n) < 0.5 && is_said_of_something(m, head, m->scratch + 8 * n)) {
-		judge_attribute(m, phrase, head, ATTRIBUTE_LEAST);
+		judge_attribute(m, phrase, head, f->count == PARSE_ONE ? ATTRIBUTE_LEAST : ATTRIBUTE_SEVERAL);
 		return;
 	}
 	value = meaning_add_part(m, phrase, MEANING_NOUN, head);
 	const double best = fmax(0, largest(match, n));
-	/* of several things each has to be called so as well as another is */
-	const double power = f->count == PARSE_ONE || is_any ? 0 : NOUN_SEVERAL;
+	/* of several things each has to be called so as well as another is, or be of that kind */
+	const int is_one = f->count == PARSE_ONE || is_any;
 	m->known[phrase] = best;
 	for (size_t o = 0; o < n; o++) {
-		const double x = match[o] * pow(match[o] / fmax(best, 1e-9), power);
+		const int is_kind = is_one || vocabulary_is_above(m->vocabulary, p->words[head].lemma, o);
+		const double x = match[o] * pow(match[o] / fmax(best, 1e-9), is_kind ? 0 : NOUN_SEVERAL);
 		value[o] = NOUN_LEAST + (1 - NOUN_LEAST) * x * x / fmax(best, 1e-9);
 		/* another thing that is called so speaks against it */
 		there[o] = match[o] * match[o] / fmax(best, 1e-9);

@@ -262,7 +262,7 @@ int name_regions(const struct lifted *l, size_t named, const struct region_facts
 		sentences[r] = (struct choose_sentence){l->texts[r], l->pieces[r],
 			l->words + (size_t)l->offsets[r] * width, lifted_middle(l, r),
 			(size_t)(l->offsets[r + 1] - l->offsets[r]), {.kind = VIEWPOINT_USUAL},
-			chooser_parse(s.chooser, r)};
+			chooser_parse(s.chooser, r), 0};
 	for (size_t o = 0; o < named; o++)
 		region[o] = REGION_NONE;
 	const int bad = !s.chooser || find_own(&s, e) || search(&s, probability, e);

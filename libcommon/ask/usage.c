@@ -76,26 +76,30 @@ static void add_parts(const struct meaning *m, double *parts)
 			parts[o] += PURPOSE_PARTS * log(fmax(m->parts[k].value[o], 1e-6));
 }
 
-/* Whether a thing is asked for by its name: one that is here, or "is there a spoon?". */
+/* Whether a thing is asked for by its name: one that is here, or "is there a spoon?", "how many spoons". */
 static int is_by_name(const struct meaning *m, int head)
 {
 	const struct parse *p = m->sentence->parse;
+	const int before = head >= 0 ? p->phrases[0].noun.item[0] - 1 : -1;
 
-	return head >= 0 && (m->known[0] >= PURPOSE_NOUN ||
+	return head >= 0 && (m->known[0] >= PURPOSE_NOUN || parse_word_is(p, before, "many|any") ||
 				    (head > 1 && closed_is(p->words[head - 1].text, CLOSED_DETERMINER) &&
 					    parse_word_is(p, head - 2, "there|is|'s")));
 }
 
-/* Whether a word is of what the target is said to be near, under ... */
-static int is_of_anchor(const struct parse *p, int word)
+/* Whether a word is of what the target is said to be near, under ...; with no noun of its own, of the place
+ * as a whole: "what is on the table?" */
+static int is_of_anchor(const struct meaning *m, int word)
 {
+	const struct parse *p = m->sentence->parse;
 	const struct parse_list *clauses = &p->phrases[0].clauses;
 
 	for (int k = 0; k < clauses->n; k++) {
 		const struct parse_clause *c = &p->clauses[clauses->item[k]];
 		for (int j = 0; c->relation < PARSE_SUPPORTS && j < c->anchors.n; j++) {
 			const struct parse_phrase *f = &p->phrases[c->anchors.item[j]];
-			if (parse_list_has(&f->noun, word) || parse_list_has(&f->attributes, word))
+			if ((p->phrases[0].noun.n || meaning_is_scene(m, c->anchors.item[j])) &&
+				(parse_list_has(&f->noun, word) || parse_list_has(&f->attributes, word)))
 				return 1;
 		}
 	}
@@ -103,12 +107,13 @@ static int is_of_anchor(const struct parse *p, int word)
 }
 
 /* Whether the words that count say more than a name and a place: "where is the teddy bear?" does not. */
-static int says_more_than_name(const struct parse *p, const char *counts)
+static int says_more_than_name(const struct meaning *m, const char *counts)
 {
+	const struct parse *p = m->sentence->parse;
 	const struct parse_list *noun = &p->phrases[0].noun;
 
 	for (int w = 0; w < p->word_count; w++)
-		if (counts[w] && !parse_list_has(noun, w) && !(noun->n && is_of_anchor(p, w)))
+		if (counts[w] && !parse_list_has(noun, w) && !is_of_anchor(m, w))
 			return 1;
 	return 0;
 }
@@ -127,7 +132,7 @@ double usage_judge(const struct meaning *m, double *score, double *scratch)
 	add_parts(m, parts);
 	const int is_said = purpose_is_said(p);
 	if (!vocabulary_for(m->vocabulary, m->sentence, use_words, about, use, &any) ||
-		!memchr(counts, 1, (size_t)p->word_count) || (!is_said && !says_more_than_name(p, counts)))
+		!memchr(counts, 1, (size_t)p->word_count) || (!is_said && !says_more_than_name(m, counts)))
 		return 0;
 	for (size_t o = 0; o < n; o++)
 		score[o] = m->arrangement->objects[o].is_there

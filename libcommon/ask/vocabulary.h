@@ -63,7 +63,8 @@ struct vocabulary {
 					 for the caller to set */
 	int has_said;	 /* whether colours and relations that training sentences give an object count: 1,
 			    likewise */
-	int of_several;	 /* whether a colour is asked of each of several things: 0, for the caller to set */
+	int of_several;	 /* whether a noun or colour is asked of each of several things: 0, for the caller to
+			    set */
 	double *scratch; /* (width) */
 	float *about;	 /* (O,width) of length 1: of each object's nouns */
 	float *word;	 /* (width) */
@@ -85,6 +86,10 @@ void vocabulary_free(struct vocabulary *v);
 /* match (O): how likely an object is called by word w of a sentence, in [0,1]: 1 where its name or a training
  * sentence calls it so; what WordNet and lang/kinds.h think of the two nouns; what their cosine is worth. */
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
+
+/* Whether a word is, by WordNet, of a kind of things that an object's name is one of: "container" of a box.
+ */
+int vocabulary_is_above(const struct vocabulary *v, const char *lemma, size_t object);
 
 /* Whether an object is, by its name, a piece of furniture. */
 int vocabulary_is_furniture(const struct vocabulary *v, size_t object);

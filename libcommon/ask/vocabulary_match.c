@@ -57,24 +57,31 @@ static double knowledge_of_name(const struct vocabulary *v, const struct naming 
 		knowledge(v, word, v->head_kinds[object], 0), knowledge(v, word, v->whole_kinds[object], 0));
 }
 
-int vocabulary_is_furniture(const struct vocabulary *v, size_t object)
+int vocabulary_is_above(const struct vocabulary *v, const char *lemma, size_t object)
 {
-	struct wordnet_noun furniture;
+	struct wordnet_noun above;
 
-	wordnet_find(&furniture, "furniture");
+	wordnet_find(&above, lemma);
 	return v->has_names && v->has_knowledge &&
-	       wordnet_is_above(&furniture, &v->kinds[v->head_kinds[object]].naming.noun);
+	       wordnet_is_above(&above, &v->kinds[v->head_kinds[object]].naming.noun);
 }
 
-/* What one mug is called, another may be called too. match (O) in and out; own (O) is scratch. */
-static void share_kin(const struct vocabulary *v, double *own, double *match)
+int vocabulary_is_furniture(const struct vocabulary *v, size_t object)
+{
+	return vocabulary_is_above(v, "furniture", object);
+}
+
+/* What one mug is called, another may be called too; of several it has to have that name. match (O) in and
+ * out; own (O) is scratch. */
+static void share_kin(const struct vocabulary *v, int is_name, double *own, double *match)
 {
 	const size_t n = v->lifted->objects;
 
 	memcpy(own, match, n * sizeof *own);
 	for (size_t o = 0; o < n; o++)
 		for (size_t k = 0; k < n && own[o] > KIN_LEAST; k++)
-			if (v->kin[o * n + k] > !v->has_names)
+			if (v->kin[o * n + k] > !v->has_names &&
+				(!is_name || v->head_kinds[o] == v->head_kinds[k]))
 				match[k] = fmax(match[k], KIN_WORTH * own[o]);
 }
 
@@ -157,12 +164,27 @@ static void judge_compound(struct vocabulary *v, const struct parse *p, int w, d
 	}
 }
 
+/* What a noun is worth of several things, by which sentences call this one: hardly of a case that one of them
+ * calls a box, where others are boxes. */
+static double worth_of_share(const struct vocabulary *v, const struct vocabulary_item *item)
+{
+	double same = 0, all = 0;
+
+	for (size_t i = 0; i < v->n; i++)
+		if (v->items[i].object == item->object && v->items[i].role == VOCABULARY_NOUN) {
+			all++;
+			same += v->items[i].kind == item->kind;
+		}
+	return all > 0 ? CALLED_LEAST + (1 - CALLED_LEAST) * fmin(1, same / (CALLED_SHARE * all)) : 1;
+}
+
 void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
 {
 	const struct lifted *l = v->lifted;
 	const struct parse_word *word = &s->parse->words[w];
 	const size_t width = (size_t)l->width, objects = l->objects;
 	struct naming known = {0};
+	int is_name = 0; /* something has that name: of several, those that have it are meant */
 
 	vocabulary_word_vector(v, word, s->vectors, v->word);
 	if (v->has_knowledge)
@@ -170,6 +192,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 	for (size_t o = 0; o < objects; o++) {
 		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
 		match[o] = named == 2;
+		is_name |= named == 2 && v->of_several;
 		if (v->has_names && named < 2)
 			match[o] = fmax(fmax(match[o], holds(v, &known, o)), knowledge_of_name(v, &known, o));
 	}
@@ -178,7 +201,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		if (item->role != VOCABULARY_NOUN)
 			continue;
 		const int is_same = !strcmp(word->lemma, item->lemma);
-		double x = is_same;
+		double x = !is_same ? 0 : is_name ? worth_of_share(v, item) : 1;
 		if (!is_same) {
 			x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
 			x = fmax(x * (known.noun.n ? VECTOR_WORTH : 1),
@@ -186,7 +209,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 		}
 		match[item->object] = fmax(match[item->object], x);
 	}
-	share_kin(v, v->other, match);
+	share_kin(v, is_name, v->other, match);
 	judge_compound(v, s->parse, w, match);
 }
 
@@ -209,8 +232,11 @@ static void add_usual(struct vocabulary *v, const char *lemma, double *match)
 	if (!v->has_knowledge)
 		return;
 	parts_of_word(&word, lemma);
-	for (size_t o = 0; o < v->lifted->objects && word.n && v->has_names; o++)
+	for (size_t o = 0; o < v->lifted->objects && word.n && v->has_names; o++) {
 		take_usual(v, v->head_kinds[o], &word, &match[o]);
+		if (word.n > 1 && *v->contents[o]) /* the case of an electronic thing */
+			take_usual(v, v->content_kinds[o], &word, &match[o]);
+	}
 	for (size_t i = 0; i < v->n && word.n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
 		if (item->role == VOCABULARY_NOUN && !item->is_general)
@@ -359,23 +385,4 @@ int vocabulary_part_colour(
 		fit[o] = fmax(share / (share + PART_COLOUR_SHARE), says_colour(v, o, colour));
 	}
 	return colour >= 0;
-}
-
-size_t vocabulary_whole(
-	struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match)
-{
-	const struct lifted *l = v->lifted;
-	const size_t width = (size_t)l->width;
-	size_t same = l->objects;
-
-	vocabulary_sentence_vector(v, vectors, pieces, v->sentence_mean, v->word);
-	for (size_t o = 0; o < l->objects; o++)
-		match[o] = -1;
-	for (size_t r = 0; r < l->sentences; r++) {
-		const size_t o = (size_t)l->object[r];
-		match[o] = fmax(match[o], dot_float(v->word, v->sentences + r * width, width));
-		if (text && same == l->objects && !strcmp(text, l->texts[r]))
-			same = o;
-	}
-	return same;
 }

@@ -1,4 +1,4 @@
-/* What sentences say the use of things is, and what things are for. */
+/* What sentences as a whole say: the use of things, and what things are for. */
 #include "ask/constants.h"
 #include "ask/vocabulary_private.h"
 #include "base/dot.h"
@@ -86,4 +86,23 @@ int vocabulary_for(struct vocabulary *v, const struct vocabulary_sentence *s, co
 			match[o] = fmax(match[o], (double)v->cosine[v->lines[k]]);
 	}
 	return 1;
+}
+
+size_t vocabulary_whole(
+	struct vocabulary *v, const char *text, const float *vectors, size_t pieces, double *match)
+{
+	const struct lifted *l = v->lifted;
+	const size_t width = (size_t)l->width;
+	size_t same = l->objects;
+
+	vocabulary_sentence_vector(v, vectors, pieces, v->sentence_mean, v->word);
+	for (size_t o = 0; o < l->objects; o++)
+		match[o] = -1;
+	for (size_t r = 0; r < l->sentences; r++) {
+		const size_t o = (size_t)l->object[r];
+		match[o] = fmax(match[o], dot_float(v->word, v->sentences + r * width, width));
+		if (text && same == l->objects && !strcmp(text, l->texts[r]))
+			same = o;
+	}
+	return same;
 }

@@ -70,6 +70,19 @@ int kinds_listed(const char *list, const char *lemma)
 	return 0;
 }
 
+const char *kinds_has(const char *lemma, size_t *length)
+{
+	static const char mark[] = "has:";
+
+	for (const char *p = first_line(); *p; p = next_line(p))
+		if (!strncmp(p, mark, sizeof mark - 1) && has(p, lemma)) {
+			p += sizeof mark - 1;
+			*length = strcspn(p, "\t");
+			return p;
+		}
+	return NULL;
+}
+
 double kinds_share(const char *a, const char *b)
 {
 	double best = 0;

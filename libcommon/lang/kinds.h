@@ -3,6 +3,8 @@
  * them near one another. English. */
 #pragma once
 
+#include <stddef.h>
+
 enum { KINDS_LENGTH = 32 }; /* of the longest noun with its 0 */
 
 /* Steps through all nouns: *at is 0 before the first. 0 after the last. */
@@ -14,5 +16,10 @@ int kinds_have(const char *lemma);
 /* Whether a lemma is in the line of this name: "holder", "gathering" (bouquet), "vague", "shape". */
 int kinds_listed(const char *list, const char *lemma);
 
-/* The chance that what is called by one lemma is called by the other, as their group has it; 0 without. */
+/* What things of a kind that a lemma is for have, of which any will do: "battery screen" of "electronics";
+ * *length bytes. NULL: it is for no such kind. */
+const char *kinds_has(const char *lemma, size_t *length);
+
+/* The chance that what is called by one lemma is called by the other, as their group has it; 0 where they
+ * share none. */
 double kinds_share(const char *a, const char *b);

@@ -1,5 +1,6 @@
 #include "lang/parts.h"
 
+#include "lang/kinds.h"
 #include "lang/things.h"
 #include "lang/tokens.h"
 
@@ -101,6 +102,12 @@ void parts_usual(struct parts *to, const char *lemma)
 
 void parts_of_word(struct parts *to, const char *lemma)
 {
+	size_t length;
+	const char *has = kinds_has(lemma, &length);
+
 	to->n = 0;
-	add(to, lemma, strlen(lemma));
+	if (has)
+		add_text(to, has, length);
+	else
+		add(to, lemma, strlen(lemma));
 }

@@ -12,7 +12,7 @@ struct parts {
 /* Fills `to` with the words of what a thing called so usually is made of, and has. */
 void parts_usual(struct parts *to, const char *lemma);
 
-/* Fills `to` with the word alone. */
+/* Fills `to` with the word alone, or what is of a kind that the word is for ("electronics"). */
 void parts_of_word(struct parts *to, const char *lemma);
 
 /* Whether a thing has what a word says. */

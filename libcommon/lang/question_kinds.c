@@ -16,17 +16,17 @@ static const struct {
 };
 
 static const char *const names[QUESTION_KINDS] = {"which", "list", "number", "colour", "look", "distance",
-	"height", "width", "size", "compare", "there", "whether", "set"};
+	"height", "width", "size", "compare", "more", "either", "there", "whether", "set"};
 
 static const char *const class_names[CLOSED_CLASSES] = {
-	[CLOSED_BE] = "be", [CLOSED_AUXILIARY] = "do", [CLOSED_PRONOUN] = "pronoun"};
+	[CLOSED_BE] = "be", [CLOSED_AUXILIARY] = "do", [CLOSED_PRONOUN] = "pronoun", [CLOSED_HAVE] = "have"};
 
 /* The words that a capture holds: from one token up to another. */
 struct capture {
 	int begin, end;
 };
 
-enum { CAPTURE_A, CAPTURE_B, CAPTURE_WORD, CAPTURES };
+enum { CAPTURE_A, CAPTURE_B, CAPTURE_C, CAPTURE_WORD, CAPTURES };
 
 struct matching {
 	const char *text;
@@ -72,9 +72,23 @@ static int is_break(const struct tokens *t, const char *text, int at)
 	const int from = at ? t->word[at - 1].span.end : 0, to = t->word[at].span.begin;
 
 	for (int k = from; k < to; k++)
-		if (strchr(",.;:?!", text[k]))
+		if (strchr(",.;:?!", text[k]) || (text[k] == '-' && text[k + 1] == ' '))
 			return 1;
 	return 0;
+}
+
+enum { ASIDE_WORDS = 3 };
+
+/* Whether words behind a pause say nothing of the thing that was asked for before it: "would you?", but not
+ * "the red one". */
+static int is_aside(const struct tokens *t, const char *text, int at)
+{
+	static const unsigned more = 1U << CLOSED_DETERMINER | 1U << CLOSED_PLACE | 1U << CLOSED_WITH |
+				     1U << CLOSED_EXCEPT | 1U << CLOSED_RELATIVE | 1U << CLOSED_NEGATION;
+	const int class = at < t->n ? tokens_class(t, at) : -1;
+
+	return at && at < t->n && t->n - at <= ASIDE_WORDS && is_break(t, text, at) &&
+	       (class < 0 || !(more >> class & 1));
 }
 
 /* Whether words say nothing more of what is asked for, before it or behind it. */
@@ -85,7 +99,8 @@ static int are_idle(const struct tokens *t, int begin, int end)
 	static const char words[] =
 		"tell|say|know|wonder|give|measure|compute|calculate|ok|hey|hi|hello|and|so|want|like|to|"
 		"if|here|there|now|then|around|about|in|total|altogether|roughly|approximately|exactly|"
-		"need|find|out|see|check|just|well|sorry|excuse|thanks|whether|or";
+		"need|find|out|see|check|just|well|sorry|excuse|thanks|whether|or|estimate|guess|work|figure|"
+		"maybe|perhaps|by";
 
 	for (; begin < end; begin++) {
 		const int class = tokens_class(t, begin);
@@ -117,14 +132,23 @@ static int match_words(struct matching *m, int which, int is_place, const char *
 /* The rest of a row from token `at` on. */
 static int match(struct matching *m, const char *said, int at)
 {
-	const size_t length = strcspn(said, " ");
+	size_t length = strcspn(said, " ");
 	const char *rest = said + length + (said[length] == ' ');
 
 	if (!length)
-		return are_idle(m->tokens, at, m->tokens->n) && !m->skip--;
+		return (are_idle(m->tokens, at, m->tokens->n) || is_aside(m->tokens, m->text, at)) &&
+		       !m->skip--;
+	if (*said == ',') {
+		if (at == m->tokens->n || !at || !is_break(m->tokens, m->text, at))
+			return 0;
+		said++;
+		length--;
+	}
 	const int is_place = *said == '@';
-	if (length == (size_t)is_place + 1 && (said[is_place] == 'A' || said[is_place] == 'B'))
-		return match_words(m, said[is_place] == 'A' ? CAPTURE_A : CAPTURE_B, is_place, rest, at);
+	static const char captures[] = "ABC";
+	const char *mark = strchr(captures, said[is_place]);
+	if (length == (size_t)is_place + 1 && mark)
+		return match_words(m, (int)(mark - captures), is_place, rest, at);
 	const int is_free = said[length - 1] == '?';
 	if (is_element(m->tokens, at, said, length - (size_t)is_free)) {
 		const struct capture before = m->of[CAPTURE_WORD];
@@ -140,7 +164,7 @@ static int match(struct matching *m, const char *said, int at)
 /* The text that a row asks for, with what was captured in it. */
 static void fill(char to[QUESTION_TEXT], const char *asks, const struct matching *m, const char *text)
 {
-	static const char marks[] = "AB$";
+	static const char marks[] = "ABC$";
 	size_t n = 0;
 
 	for (const char *c = asks; *c && n + 1 < QUESTION_TEXT; c++) {
@@ -158,19 +182,105 @@ static void fill(char to[QUESTION_TEXT], const char *asks, const struct matching
 	to[n < QUESTION_TEXT ? n : QUESTION_TEXT - 1] = 0;
 }
 
+void question_noun(const char *phrase, char noun[TOKEN_LENGTH])
+{
+	struct tokens t;
+	int i = 0;
+
+	*noun = 0;
+	tokens_take(&t, phrase, NULL, NULL, 0);
+	while (i < t.n && tokens_class(&t, i) != CLOSED_DETERMINER)
+		i++;
+	for (i = i < t.n ? i + 1 : 0; i < t.n; i++) {
+		const int class = tokens_class(&t, i);
+		if (class < 0 && (*t.word[i].text < '0' || *t.word[i].text > '9'))
+			snprintf(noun, TOKEN_LENGTH, "%s", t.word[i].lemma);
+		else if (*noun ||
+			 (class != CLOSED_ATTRIBUTE && class != CLOSED_SIZE && class != CLOSED_NUMBER))
+			return;
+	}
+}
+
+/* "Is the mug larger than the red one?": than the red mug. */
+static void name_one(struct question_asked *q)
+{
+	char noun[TOKEN_LENGTH], text[QUESTION_TEXT];
+	struct tokens t;
+
+	tokens_take(&t, q->text[1], NULL, NULL, 0);
+	question_noun(q->text[0], noun);
+	for (int i = 1; i < t.n && *noun && *q->text[0]; i++)
+		if (tokens_is(&t, i, "one") && tokens_class(&t, i - 1) != CLOSED_NUMBER) {
+			snprintf(text, sizeof text, "%.*s%s%s", t.word[i].span.begin, q->text[1], noun,
+				q->text[1] + t.word[i].span.end);
+			memcpy(q->text[1], text, sizeof text);
+			return;
+		}
+}
+
+/* Whether a word tells on which side of something a thing is: of "in front of" that is "front". */
+static int is_side(int closed)
+{
+	const int relation = closed < 0 ? -1 : closed_words[closed].relation;
+
+	return relation >= 0 && (relation <= PARSE_BELOW || relation == PARSE_BETWEEN);
+}
+
+/* "us", "the camera". */
+static int is_viewer(const struct tokens *t, struct capture of)
+{
+	return tokens_class(t, of.end - 1) == CLOSED_PRONOUN;
+}
+
 static void take(struct question_asked *q, size_t row, const struct matching *m, const char *text)
 {
 	const struct capture word = m->of[CAPTURE_WORD];
-	const int closed = word.end ? m->tokens->word[word.begin].closed : -1;
+	const struct capture asks = word.end ? word : m->of[CAPTURE_B];
+	int closed = -1;
 
 	while (q->kind + 1 < QUESTION_KINDS && strcmp(names[q->kind], rows[row].kind) != 0)
 		q->kind++;
+	for (int i = asks.end; i-- > asks.begin;)
+		if (word.end || (tokens_class(m->tokens, i) == CLOSED_PLACE && !is_side(closed)))
+			closed = m->tokens->word[i].closed;
 	q->relation = closed < 0 ? -1 : closed_words[closed].relation;
+	const struct capture about = m->of[m->of[CAPTURE_A].end ? CAPTURE_A : CAPTURE_B];
+	if (about.end)
+		q->about = (struct parse_span){
+			m->tokens->word[about.begin].span.begin, m->tokens->word[about.end - 1].span.end};
+	if (m->of[CAPTURE_C].end && !is_viewer(m->tokens, m->of[CAPTURE_C]))
+		fill(q->text[2], "C", m, text);
 	for (int k = 0; k < 2; k++)
 		if (strcmp(rows[row].asks[k], "-") != 0)
 			fill(q->text[k], rows[row].asks[k], m, text);
 		else
 			snprintf(q->text[k], sizeof q->text[k], "%s", k ? "" : text);
+	name_one(q);
+}
+
+/* "Roughly", and "would you say": they change nothing, wherever they stand. */
+static int filler_length(const struct tokens *t, int i)
+{
+	static const char about[] = "roughly|approximately|exactly|approx|actually|please";
+	static const char say[] = "say|think|guess|reckon|estimate|suppose";
+
+	if (tokens_class(t, i) == CLOSED_AUXILIARY && tokens_is(t, i + 1, "you") && tokens_is(t, i + 2, say))
+		return 3;
+	return tokens_is(t, i, about);
+}
+
+static void leave_fillers(struct tokens *t)
+{
+	int n = 0;
+
+	for (int i = 0; i < t->n; i++) {
+		const int skip = filler_length(t, i);
+		if (skip)
+			i += skip - 1;
+		else
+			t->word[n++] = t->word[i];
+	}
+	t->n = n;
 }
 
 int question_read(struct question_asked *q, const char *text, int way)
@@ -179,6 +289,7 @@ int question_read(struct question_asked *q, const char *text, int way)
 
 	*q = (struct question_asked){.relation = -1};
 	tokens_take(&t, text, NULL, NULL, 0);
+	leave_fillers(&t);
 	for (size_t row = 0; row < sizeof rows / sizeof *rows; row++)
 		for (int at = 0; at < t.n; at++) {
 			struct matching first = {.text = text, .tokens = &t}, m = first;
@@ -193,4 +304,16 @@ int question_read(struct question_asked *q, const char *text, int way)
 		}
 	snprintf(q->text[0], sizeof q->text[0], "%s", text);
 	return !way;
+}
+
+int question_is_open(const char *text)
+{
+	static const char words[] = "what|whatever|something|anything|everything|ones|things";
+	struct tokens t;
+	int is = 0;
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	for (int i = 0; i < t.n; i++)
+		is |= tokens_is(&t, i, words);
+	return is;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lang/parse.h"
+#include "lang/tokens.h"
 
 enum question_kind {
 	QUESTION_WHICH,	   /* the thing itself, and where it is: whatever is none of the others */
@@ -15,9 +16,11 @@ enum question_kind {
 	QUESTION_WIDTH,	   /* how wide, how long */
 	QUESTION_SIZE,	   /* how large */
 	QUESTION_COMPARE,  /* which of two is larger, higher, farther left */
+	QUESTION_MORE,	   /* whether the first of two is the larger, the higher */
+	QUESTION_EITHER,   /* which of two the first thing is: "black or white" */
 	QUESTION_THERE,	   /* whether it is there */
 	QUESTION_WHETHER,  /* whether the first, which is there, is the second */
-	QUESTION_SET,	   /* what stands in a relation: the first, or where that is in doubt the second */
+	QUESTION_SET,	   /* what stands in a relation: one thing, or where that is in doubt all that do */
 	QUESTION_KINDS
 };
 
@@ -25,9 +28,10 @@ enum { QUESTION_TEXT = 2048, QUESTION_WAYS = 8 /* that are worth trying */ };
 
 struct question_asked {
 	enum question_kind kind;
-	int relation; /* enum parse_relation of the word of size or place that asks ("tall"), -1 where there
-			 is none */
-	char text[2][QUESTION_TEXT]; /* what to ask for; "" nothing */
+	int relation; /* enum parse_relation of the word of size or place that asks ("tall"), or that a place
+			 begins with ("on the tray"); -1 where there is none */
+	char text[3][QUESTION_TEXT]; /* what to ask for; "" nothing. The third: what two are compared by */
+	struct parse_span about;     /* of the question: the thing that it asks about; empty: not known */
 };
 
 /* The name of a kind, as the table has it. */
@@ -36,3 +40,10 @@ const char *question_name(enum question_kind kind);
 /* The way-th way to read a question, from 0: 1, or 0 where there is no such way. Way 0 of a text that is of
  * no other kind is QUESTION_WHICH with the text itself. */
 int question_read(struct question_asked *q, const char *text, int way);
+
+/* The noun of a phrase: "mug" of "the red mug on the tray"; "": it has none. */
+void question_noun(const char *phrase, char noun[TOKEN_LENGTH]);
+
+/* Whether a text asks for whatever there is, "what can I drink from?", "the ones to read", and not for one.
+ */
+int question_is_open(const char *text);

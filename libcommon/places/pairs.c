@@ -14,6 +14,10 @@ static const double apart_least = 0.04, apart_soft = 0.03, nearby = 0.3;
 static const double low_is_near = 0.7;
 /* How well what lies on a thing is "above" it, which is rather said of what is apart. */
 static const double on_is_above = 0.6;
+/* How high above the others' undersides what rests on nothing is half on the table. */
+static const double above_all = 0.6, above_soft = 0.1;
+/* How wrong it is to say of a thing on another that it is on the table. */
+static const double on_the_rest = 0.5;
 /* A gap that is none, as the undersides of things are seen badly; the gap at which "next to", and the
  * distance at which "far from" is half true. */
 static const double touching = 0.05, next_to = 0.3, far_from = 0.8;
@@ -125,7 +129,7 @@ double pair_fits(const struct arrangement *a, enum parse_relation relation, enum
 		return fmax(pair_stands_on(a, q, p), loose);
 	case PARSE_ABOVE:
 		loose = logistic((p->low[2] - q->high[2] + 0.1 * s) / (0.03 * s)) *
-			exp(-pair_distance(p, q) / (0.7 * s));
+			exp(-pair_distance(p, q) / ((width == RELATE_HALF_PLANE ? 1.4 : 0.7) * s));
 		return fmax(on_is_above * pair_stands_on(a, p, q), loose);
 	default:
 		return 0.5;
@@ -142,4 +146,36 @@ double pair_between(const struct arrangement *a, const struct arranged *o, const
 
 	return logistic((along - 0.1) / 0.05) * logistic((0.9 - along) / 0.05) *
 	       exp(-0.5 * pow(aside / (0.25 * length + 0.1 * a->spacing), 2));
+}
+
+/* The middle one of the heights of the objects' undersides. */
+static double find_ground(const struct arrangement *a)
+{
+	double ground = INFINITY;
+
+	for (size_t o = 0; o < a->n; o++) {
+		size_t below = 0, there = 0;
+		for (size_t i = 0; i < a->n; i++) {
+			there += a->objects[i].is_there != 0;
+			below += a->objects[i].is_there && a->objects[i].low[2] <= a->objects[o].low[2];
+		}
+		if (a->objects[o].is_there && 2 * below >= there)
+			ground = fmin(ground, a->objects[o].low[2]);
+	}
+	return ground;
+}
+
+void pairs_on_scene(const struct arrangement *a, double *out)
+{
+	const double ground = find_ground(a);
+
+	for (size_t o = 0; o < a->n; o++) {
+		const double high = (a->objects[o].low[2] - ground) / a->spacing;
+		double rests = 0;
+		for (size_t i = 0; i < a->n; i++)
+			if (i != o && a->objects[i].is_there)
+				rests = fmax(rests, pair_stands_on(a, &a->objects[o], &a->objects[i]));
+		out[o] =
+			fmin(1 - on_the_rest * rests, fmax(rests, logistic((above_all - high) / above_soft)));
+	}
 }

@@ -24,3 +24,7 @@ double pair_gap(const struct arranged *p, const struct arranged *q);
 
 /* Between their centres, on the ground. */
 double pair_distance(const struct arranged *p, const struct arranged *q);
+
+/* out (O): how far each is on the table itself, rather than on a thing that is on it, or on a shelf above it.
+ */
+void pairs_on_scene(const struct arrangement *a, double *out);

@@ -11,8 +11,6 @@ enum { RANKS = 32 }; /* "the 32nd from the left" and all after it are one */
 
 /* Of half the objects' extent: where the left side begins. */
 static const double side_least = 0.15, side_soft = 0.1;
-/* How wrong it is to say of a thing on another that it is on the table. */
-static const double on_the_rest = 0.5;
 /* Differences that are told apart: of lengths, as shares of the spacing, and of natural logarithms of sizes;
  * of what is "as tall as" another; of what lies on both sides of the middle. */
 static const double best_soft = 0.04, best_soft_size = 0.06, as_large_soft = 0.25, middle_soft = 0.03;
@@ -231,15 +229,8 @@ static void by_itself(
 		sized(a, r->kind, key, out);
 		return;
 	}
-	if (r->kind == PARSE_ON && r->count) { /* on the table itself, rather than on a thing that is on it */
-		for (size_t o = 0; o < a->n; o++) {
-			out[o] = 1;
-			for (size_t i = 0; i < a->n; i++)
-				if (i != o && a->objects[i].is_there)
-					out[o] = fmin(
-						out[o], 1 - on_the_rest * pair_stands_on(a, &a->objects[o],
-										  &a->objects[i]));
-		}
+	if (r->kind == PARSE_ON && r->count) {
+		pairs_on_scene(a, out);
 		return;
 	}
 	relate_rank(a, r->kind, 1, fit, key, out);

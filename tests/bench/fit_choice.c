@@ -124,7 +124,7 @@ static int read_cell(struct cell *c, const struct parser *parser, struct err *e)
 		if (parse_sentence(&c->parses[i], parser, t->texts[i], &v, e))
 			return -1;
 		c->sentences[i] = (struct choose_sentence){t->texts[i], t->pieces[i], vectors, NULL,
-			(size_t)words, viewpoint_of(c, i), &c->parses[i]};
+			(size_t)words, viewpoint_of(c, i), &c->parses[i], 0};
 		mark_meant(c, i);
 	}
 	return 0;

@@ -91,7 +91,7 @@ static struct choice choice;
 static inline int ask_parsed(const char *text, unsigned parts, struct viewpoint from, const struct parse *p)
 {
 	static float vectors[MOST * WIDTH];
-	const struct choose_sentence s = {text, text, vectors, NULL, encode(text, vectors), from, p};
+	const struct choose_sentence s = {text, text, vectors, NULL, encode(text, vectors), from, p, 0};
 	struct err e;
 	int best = 0;
 

@@ -202,8 +202,8 @@ static void many(void)
 {
 	static float a[MOST * WIDTH], b[MOST * WIDTH];
 	const struct choose_sentence s[] = {
-		{"the red box", "the red box", a, NULL, encode("the red box", a), {0}, NULL},
-		{"another", NULL, b, NULL, encode("the dull can", b), {0}, NULL}};
+		{"the red box", "the red box", a, NULL, encode("the red box", a), {0}, NULL, 0},
+		{"another", NULL, b, NULL, encode("the dull can", b), {0}, NULL, 0}};
 	float both[2 * OBJECTS];
 	char of_both[2 * OBJECTS];
 	struct choice two[2];
@@ -239,7 +239,7 @@ static void kept(void)
 		const char *text = asked[i / 2];
 		from.kind = i % 2 ? VIEWPOINT_POINT : VIEWPOINT_USUAL;
 		const struct choose_sentence s = {
-			text, text, vectors, NULL, encode(text, vectors), from, NULL};
+			text, text, vectors, NULL, encode(text, vectors), from, NULL, 0};
 		CHECK(!choose_with(c, &s, 1, &with, of_kept, chosen_kept, NULL, &e) &&
 				!choose(&scene, &s, 1, CHOOSE_ALL, &without, alone, chosen_alone, NULL, &e),
 			"'%s': %s", text, e.message);
@@ -490,7 +490,7 @@ static void words_of_others(void)
 
 	for (size_t i = 0; i < sizeof asks / sizeof *asks; i++) {
 		const struct choose_sentence q = {asks[i].text, asks[i].text, asked, NULL,
-			encode(asks[i].text, asked), {.kind = VIEWPOINT_USUAL}, NULL};
+			encode(asks[i].text, asked), {.kind = VIEWPOINT_USUAL}, NULL, 0};
 		CHECK(!choose(&s, &q, 1, CHOOSE_ALL, &choice, probability, chosen, NULL, &e), "%s",
 			e.message);
 		for (int o = 0; o < OBJECTS; o++)

@@ -24,8 +24,14 @@ static void kinds(void)
 	is("please tell me what colour the mug is", QUESTION_COLOUR, "the mug", "");
 	is("hi, what color is the big mug?", QUESTION_COLOUR, "the big mug", "");
 	is("how high is my mug", QUESTION_HEIGHT, "my mug", "");
-	is("what's left of the mug?", QUESTION_SET, "what's left of the mug?",
-		"everything that is left of the mug");
+	is("what's left of the mug?", QUESTION_SET, "what's left of the mug?", "");
+	is("is the mug larger than the red one?", QUESTION_MORE, "the mug", "the red mug");
+	is("is the mug black or white?", QUESTION_EITHER, "the mug that is black", "the mug that is white");
+	is("the mug is on the tray, isn't it?", QUESTION_WHETHER, "the mug", "the mug that is on the tray");
+	is("the mug is on the tray, give me that", QUESTION_WHICH, "the mug is on the tray, give me that",
+		"");
+	is("how tall would you say the mug is?", QUESTION_HEIGHT, "the mug", "");
+	is("how many mugs have I got, going by this", QUESTION_NUMBER, "all mugs", "");
 	is("is the mug on the tray?", QUESTION_WHETHER, "the mug", "the mug that is on the tray");
 	is("is the mug red?", QUESTION_WHETHER, "the mug", "the mug that is red");
 	is("is there a mug?", QUESTION_THERE, "is there a mug?", "");
@@ -56,6 +62,9 @@ static void words(void)
 
 	CHECK(question_read(&q, "which one is smaller, a or b", 0) && q.relation == PARSE_SMALLER, "%d",
 		q.relation);
+	CHECK(question_read(&q, "which is nearer to the jug: a or b", 0) && !strcmp(q.text[2], "the jug"),
+		"'%s'", q.text[2]);
+	CHECK(question_read(&q, "which is nearer to us: a or b", 0) && !*q.text[2], "'%s'", q.text[2]);
 	CHECK(question_read(&q, "the mug", 0) && q.relation == -1, "%d", q.relation);
 	memset(long_text, 'x', sizeof long_text);
 	memcpy(long_text, "how tall is ", 12);

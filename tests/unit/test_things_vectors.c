@@ -95,7 +95,8 @@ static int ask(const char *text, const char *thing, const char *of)
 		words += *p == ' ';
 	for (size_t i = 0; i < words * WIDTH; i++)
 		vectors[i] = (float)line[i % WIDTH];
-	const struct choose_sentence s = {text, text, vectors, NULL, words, {.kind = VIEWPOINT_USUAL}, NULL};
+	const struct choose_sentence s = {
+		text, text, vectors, NULL, words, {.kind = VIEWPOINT_USUAL}, NULL, 0};
 	CHECK(!choose(&scene, &s, 1, parts, &choice, probability, chosen, NULL, &e), "'%s'", text);
 	for (int o = 0; o < OBJECTS && choice.there > 0.5; o++)
 		if (chosen[o])

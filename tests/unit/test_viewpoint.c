@@ -24,7 +24,7 @@ static int ask_standing(const char *text, struct viewpoint from)
 		    "'%s' is parsed", text))
 		return -1;
 	p.view = PARSE_VIEW_FROM;
-	const struct choose_sentence s = {text, text, vectors, NULL, encode(text, vectors), from, &p};
+	const struct choose_sentence s = {text, text, vectors, NULL, encode(text, vectors), from, &p, 0};
 	int best = 0;
 	CHECK(!choose(&scene, &s, 1, WORDS | NAMES | RELATIONS, &choice, probability, chosen, NULL, &e), "%s",
 		e.message);
@@ -48,7 +48,7 @@ static void after_it(void)
 
 	for (int i = 0; i < 2; i++)
 		s[i] = (struct choose_sentence){texts[i], texts[i], vectors[i], NULL,
-			encode(texts[i], vectors[i]), {.kind = VIEWPOINT_POINT, .point = {0, 0, 5}}, NULL};
+			encode(texts[i], vectors[i]), {.kind = VIEWPOINT_POINT, .point = {0, 0, 5}}, NULL, 0};
 	CHECK(!choose(&scene, s, 2, WORDS | NAMES | RELATIONS, choices, p, is, NULL, &e), "%s", e.message);
 	CHECK(is[1] && !is[0], "facing the tin");
 	CHECK(is[OBJECTS] && !is[OBJECTS + 1], "the next one");

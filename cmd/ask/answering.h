@@ -1,0 +1,30 @@
+/* What answers by the kind of question share. */
+#pragma once
+
+#include "cmd/ask/reply.h"
+
+/* Adds to t->value. */
+__attribute__((format(printf, 2, 3))) void answering_say(struct answer_told *t, const char *format, ...);
+
+/* The length that a kind of question is about: the height of a box, its longer side, or their mean; and its
+ * name. */
+double answering_length(const struct answer_told *t, size_t object, enum question_kind kind);
+const char *answering_length_name(enum question_kind kind);
+
+/* Nothing is measured of a thing that has no Gaussians. */
+void answering_need_boxes(const struct answer_told *t, struct asking_answer *found);
+
+/* Whether the one thing of an answer is no more likely than not, or another is nearly as likely. */
+int answering_is_unsure(const struct asking_answer *a);
+
+/* The two things of t->asked as `found`: of the ways to read it by the one in which both are likeliest. With
+ * is_compared the one that is more so comes first and stays alone, and t->is_yes says whether it was the
+ * first. */
+int answering_pair(struct answer_told *t, struct asking_answer *found, struct asking *a, int is_compared,
+	const struct report *to, struct err *e);
+
+/* Whether a word of size or place is one that two things are compared by. */
+int answering_is_comparable(int relation);
+
+/* t->distance, of the two things that were found. */
+void answering_measure_distance(struct answer_told *t);
