@@ -12,6 +12,7 @@ BEGIN {
 	title["contrast"] = "Contrast, with and without projections"
 	title["settings"] = "Settings of the training"
 	title["steps"] = "Steps of the training"
+	title["taught"] = "Parses in place of words, and sentences of the scene's own"
 	title["lifted"] = "Without training, and from there"
 }
 

@@ -18,7 +18,7 @@
 #
 # Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
 # table: statistics (of the scenes) unseen (answers of the lifted model to sentences in a wording kept apart) modules second (what may teach a second stage) similarity masks interaction width encoder contrast settings steps sentences lifted (and,
-# not in the paper, answers without training, and trainings that start from them) hard (the same by what makes a case hard)
+# not in the paper, answers without training, and trainings that start from them) taught (what stands for a sentence, and sentences of the scene's own) hard (the same by what makes a case hard)
 # space (its boxes and outlines of whole objects). Not among them: exact, the modules without the shortcuts of a training
 # step, several times as long; and cells, which prints the scenes and seeds, for many machines: ablation.sbatch. They print;
 # OUT/SIZE/NAME.md keeps what was printed. Every cell is the mean over the seeds, each the mean over the scenes, with the spread between seeds.
@@ -31,7 +31,7 @@ SIZE ?= quick
 SCENES ?= diner toys tea kitchen
 THREADS ?= 1
 TRAIN ?= --feature-rate 0.01 --mlp-rate 0.0004
-tables := statistics unseen modules second similarity masks interaction width encoder contrast settings steps sentences lifted hard space
+tables := statistics unseen modules second similarity masks interaction width encoder contrast settings steps sentences lifted taught hard space
 $(call check,,OUT BIN BERT,SIZE SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS run.% masks.% text.% steps.% init.% lift.% \
 	ask.% $(tables) exact)
 ifeq ($(SIZE),full)
@@ -108,6 +108,12 @@ run.warmed = $(run.both)
 masks.warmed = masks/scene
 init.warmed = lifted/full
 steps.warmed = 500
+# The lifted objects learned by words and by parses, without and with sentences that the scene writes of itself (refer-say), in as
+# many steps of as many sentences; and parses in the paper's way, from images.
+$(foreach r,words parses words-taught parses-taught,$(eval run.$(r) = $$(run.none) $(if $(findstring parses,$(r)),--query parses) \
+	--feature-rate 0.0025 --mlp-rate 0.0001 --init-iterations 1250)$(eval steps.$(r) = 1250)$(eval masks.$(r) = masks/scene)$(eval init.$(r) = lifted/full))
+$(foreach r,words-taught parses-taught,$(eval text.$(r) = taught))
+run.none-parses = $(run.none) --query parses
 
 # Answers of lifted models: which model, and which parts of the choice it goes without.
 lift.lift = full
@@ -143,6 +149,7 @@ second := both two two-chosen two-pooled two-pooled3d onscene two-lifted
 exact := none none-exact pcmi pcmi-exact gtcl gtcl-exact both both-exact two two-exact two-lifted two-lifted-exact
 sentences := both two
 lifted := both two onscene warmed lift-sentence lift-words lift-names lift-colours lift-sizes lift-relations lift lift-voted $(foreach p,$(parts),lift-but-$(p))
+taught := none none-parses words parses words-taught parses-taught
 hard := two warmed lift-relations lift
 space := lift
 unseen := lift
@@ -182,6 +189,10 @@ $(1)/text/parses.jsonl: $(1)/text/contextual.safetensors
 $(1)/text/static.safetensors: $(1)/data/made-by $(1)/log/static.options
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/static,text-encode --words static --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
+$(1)/text/taught.safetensors: $(1)/lifted/full.safetensors
+	$$(call log,$(1)/log/say,refer-say --scene $(1)/scene --model $$< --encoder $(BERT) --each 100 --seed $(3) -o $(1)/text/said.jsonl $(1))
+	@cat $(1)/data/sentences.jsonl $(1)/text/said.jsonl >$(1)/text/taught.jsonl
+	$$(call log,$(1)/log/taught,text-encode --model $(BERT) -o $$@ $(1)/text/taught.jsonl)
 $(1)/masks/first.jsonl: $(1)/weights/complete
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/first,pseudomask-select --method first --scene $(1)/scene --weights $(1)/weights -o $$@ \

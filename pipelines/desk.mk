@@ -8,7 +8,7 @@
 # ASK         of lift: default desk-relations.jsonl beside this file, sentences that say nothing but relations
 # ITERATIONS  steps of each stage; default 45000
 # TRAIN       options for refer-train; default --tolerance 0.01
-# SEED, TEACH, BERT, BIN   as in two-stage.mk
+# SEED, TEACH, TAUGHT, BERT, BIN   as in two-stage.mk
 
 here := $(dir $(lastword $(MAKEFILE_LIST)))
 TEST_VIEWS ?= input_0001,input_0009,input_0017,input_0025
@@ -18,7 +18,7 @@ TRAIN ?= --tolerance 0.01
 include $(here)common.mk
 # The workflow gets what is said below, and nothing else.
 MAKEOVERRIDES :=
-$(call check,DATA,DATA OUT ASK,TEST_VIEWS SCALE ITERATIONS TRAIN SEED TEACH BERT BIN)
+$(call check,DATA,DATA OUT ASK,TEST_VIEWS SCALE ITERATIONS TRAIN SEED TEACH TAUGHT BERT BIN)
 
 help:
 	@sed -n '/^$$/q;s/^# \{0,1\}//p' $(called)
@@ -33,7 +33,7 @@ lift: SCALE ?= 0.5
 flow = @$(MAKE) --no-print-directory -f $(here)$(1) SCENE=$(OUT) SPLATS=$(DATA)/point_cloud.ply CAMERAS=$(DATA)/sparse/0 \
 	IMAGES=$(DATA)/images TEST_VIEWS=$(call quoted,TEST_VIEWS) SENTENCES=$(DATA)/sentences.jsonl \
 	CANDIDATES=$(DATA)/candidates.jsonl TRUTH=$(DATA)/truth.jsonl SCALE=$(call quoted,SCALE) \
-	$(if $(SEED),SEED=$(call quoted,SEED)) $(if $(TEACH),TEACH=$(call quoted,TEACH)) BERT=$(call quoted,BERT) BIN=$(call quoted,BIN)
+	$(if $(SEED),SEED=$(call quoted,SEED)) $(if $(TEACH),TEACH=$(call quoted,TEACH)) $(if $(TAUGHT),TAUGHT=$(call quoted,TAUGHT)) BERT=$(call quoted,BERT) BIN=$(call quoted,BIN)
 
 desk:
 	$(call flow,two-stage.mk) ITERATIONS=$(call quoted,ITERATIONS) TRAIN=$(call quoted,TRAIN)
