@@ -4,6 +4,7 @@
 #include "base/mem.h"
 #include "formats/cameras/camerafile.h"
 #include "lang/closed.h"
+#include "lang/question_kinds.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -297,8 +298,12 @@ void asking_expect(struct asking *a, const char *const *questions, size_t n)
 	encoding_free(&a->ahead);
 	a->ahead = (struct encoding){0};
 	for (size_t i = 0; i < n && !bad; i++) {
-		snprintf(ref, sizeof ref, "%zu", i);
-		bad = sentences_add(&a->ahead.sentences, ref, "?", questions[i], &e);
+		struct question_asked q;
+		question_read(&q, questions[i], 0);
+		for (int k = 0; k < 3 && !bad; k++) {
+			snprintf(ref, sizeof ref, "%zu.%d", i, k);
+			bad = *q.text[k] && sentences_add(&a->ahead.sentences, ref, "?", q.text[k], &e);
+		}
 	}
 	if (!n || (!bad && !encode(&a->ahead, &a->encoder, &report_silent, &e)))
 		return;

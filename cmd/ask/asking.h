@@ -82,8 +82,8 @@ struct asking_answer {
 	char *explained; /* of explain_meaning; NULL where it was not asked for */
 };
 
-/* Encodes questions that are about to be asked all at once, which takes less time than one by one. No answer
- * changes, and nothing is said: what goes wrong is said when the question is asked. */
+/* Encodes what questions that are about to be answered ask for, all at once, which takes less time than one
+ * by one. No answer changes, and nothing is said: what goes wrong is said when the question is asked. */
 void asking_expect(struct asking *a, const char *const *questions, size_t n);
 
 /* Answers a question; warns where it is too long for the encoder. With is_all, of one thing that is asked for

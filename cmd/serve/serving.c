@@ -17,7 +17,7 @@ static void expect(struct serving *s, const struct serving_job *jobs)
 	for (const struct serving_job *j = jobs; j && n < AT_ONCE; j = j->next)
 		if (j->question)
 			questions[n++] = j->question;
-	asking_expect(s->asking, questions, n > 1 ? n : 0);
+	asking_expect(s->asking, questions, n);
 }
 
 static void finish(struct serving *s, struct serving_job *job, int result)
