@@ -31,7 +31,7 @@ static int add_part(
 			return 0;
 	if (mem_grow((void **)&p->items, &p->capacity, p->n + 1, sizeof *p->items, "sentences", e))
 		return -1;
-	strcpy(p->items[p->n++], text);
+	memcpy(p->items[p->n++], text, strlen(text) + 1);
 	return 0;
 }
 

@@ -59,7 +59,7 @@ patched() {
 @test "what is written: the state of step 50, to the table of the page" {
 	"$BIN/gs-check" good
 	jq -e '.__metadata__ | .format == "refer.checkpoint" and .version == "1" and .tool == "refer-train" and .iteration == "50"' header
-	jq -re '.__metadata__.identity' header | grep -qxE -e '--interaction none --similarity dot --contrast cosine --feature-width 16 --temperature 0\.1 --lambda 0\.02 --feature-rate 0\.0025 --mlp-rate 0\.0001 --batch 1 --negatives 12 --tolerance 0 --share 0\.04 --init-iterations 0 --hold-out 0 --seed 1, inputs [0-9a-f]{8}'
+	jq -re '.__metadata__.identity' header | grep -qxE -e '--interaction none --similarity dot --query words --contrast cosine --feature-width 16 --temperature 0\.1 --lambda 0\.02 --feature-rate 0\.0025 --mlp-rate 0\.0001 --batch 1 --negatives 12 --tolerance 0 --share 0\.04 --init-iterations 0 --hold-out 0 --seed 1, inputs [0-9a-f]{8}'
 	jq -e '.losses.shape == [3] and .losses.dtype == "F64" and .values.shape == .first_moment.shape and .values.shape == .second_moment.shape' header
 	jq -e '.values.dtype == "F32" and .values.shape[0] % 16 == 0' header
 }
