@@ -9,6 +9,15 @@ static const char *const similarities[2] = {"dot", "cosine"};
 static const char *const queries[2] = {"words", "parses"};
 static const char *const contrasts[3] = {"none", "dot", "cosine"};
 
+/* The place of a name, or -1. */
+static int find_name(const char *const *names, int n, const char *name)
+{
+	for (int i = 0; i < n; i++)
+		if (!strcmp(name, names[i]))
+			return i;
+	return -1;
+}
+
 const char *refer_interaction_name(enum refer_interaction i)
 {
 	return interactions[i];
@@ -16,10 +25,7 @@ const char *refer_interaction_name(enum refer_interaction i)
 
 int refer_interaction_parse(const char *name)
 {
-	for (int i = 0; i < REFER_INTERACTIONS; i++)
-		if (!strcmp(name, interactions[i]))
-			return i;
-	return -1;
+	return find_name(interactions, REFER_INTERACTIONS, name);
 }
 
 const char *refer_similarity_name(enum refer_similarity s)
@@ -29,10 +35,7 @@ const char *refer_similarity_name(enum refer_similarity s)
 
 int refer_similarity_parse(const char *name)
 {
-	for (int i = 0; i < 2; i++)
-		if (!strcmp(name, similarities[i]))
-			return i;
-	return -1;
+	return find_name(similarities, 2, name);
 }
 
 const char *refer_query_name(enum refer_query q)
@@ -42,10 +45,7 @@ const char *refer_query_name(enum refer_query q)
 
 int refer_query_parse(const char *name)
 {
-	for (int i = 0; i < 2; i++)
-		if (!strcmp(name, queries[i]))
-			return i;
-	return -1;
+	return find_name(queries, 2, name);
 }
 
 const char *refer_contrast_name(enum refer_contrast c)
