@@ -86,7 +86,7 @@ $(BUILD)/obj/%.o: %.c $(BUILD)/flags | $(BUILD)/headers
 $(BUILD)/obj/formats/encoders/parser_weights.o: formats/encoders/parser_default.safetensors
 
 # So are tables of words, as C.
-TABLES := $(BUILD)/tables/lang/closed.inc $(BUILD)/tables/lang/colours.inc $(BUILD)/tables/lang/question_kinds.inc
+TABLES := $(BUILD)/tables/lang/closed.inc $(BUILD)/tables/lang/colours.inc $(BUILD)/tables/lang/question_kinds.inc $(BUILD)/tables/lang/things.inc
 $(BUILD)/tables/lang/closed.inc: libcommon/lang/closed.tsv
 	@mkdir -p $(@D)
 	awk -F '\t' '!/^#/ { printf "\t{\"%s\", CLOSED_%s, %s, %s},\n", $$1, toupper($$2), $$3 == "-" ? -1 : "PARSE_" toupper($$3), $$4 }' $< >$@
@@ -96,6 +96,9 @@ $(BUILD)/tables/lang/colours.inc: libcommon/lang/colours.tsv
 $(BUILD)/tables/lang/question_kinds.inc: libcommon/lang/question_kinds.tsv
 	@mkdir -p $(@D)
 	awk -F '\t' '!/^#/ { printf "\t{\"%s\", \"%s\", {\"%s\", \"%s\"}},\n", $$1, $$2, $$3, $$4 }' $< >$@
+$(BUILD)/tables/lang/things.inc: libcommon/lang/things.tsv
+	@mkdir -p $(@D)
+	awk -F '\t' '{ n = split($$1, name, ", "); for (i = 1; i <= n; i++) printf "\t{\"%s\", %d},\n", name[i], NR - 1 }' $< | LC_ALL=C sort -t '"' -k 2,2 -k 3,3V -u >$@
 TABLED := $(patsubst $(BUILD)/tables/%.inc,$(BUILD)/obj/libcommon/%.o,$(TABLES))
 $(TABLED): override CPPFLAGS += -I$(BUILD)/tables
 $(TABLED): $(TABLES)

@@ -73,7 +73,8 @@ static void find_names(struct pretrained *s)
 static int load_all(struct pretrained *s, struct text_tower *b)
 {
 	find_names(s);
-	return -(pretrained_tower(s, b) || text_tower_alloc(b, s->e) || pretrained_tower(s, b));
+	return -(text_tower_alloc_layers(b, s->e) || pretrained_tower(s, b) || text_tower_alloc(b, s->e) ||
+		 pretrained_tower(s, b));
 }
 
 int bert_model_read(struct text_tower *b, const char *dir, struct err *e)
@@ -86,7 +87,7 @@ int bert_model_read(struct text_tower *b, const char *dir, struct err *e)
 		return -1;
 	if (!pretrained_open(&s.st, dir, NULL, e)) {
 		bad = load_all(&s, b);
-		safetensors_close(&s.st);
+		bad |= pretrained_close(&s, b);
 	}
 	if (bad)
 		text_tower_free(b);

@@ -214,8 +214,9 @@ static int load_all(struct pretrained *s, struct text_tower *c, const struct kin
 {
 	s->names = find_layout(&s->st);
 	s->prefix = s->names->prefix;
-	return -(pretrained_tower(s, c) || find_projection(s, c, kind) || text_tower_alloc(c, s->e) ||
-		 pretrained_tower(s, c) || (c->projected && load_projection(s, c)));
+	return -(text_tower_alloc_layers(c, s->e) || pretrained_tower(s, c) || find_projection(s, c, kind) ||
+		 text_tower_alloc(c, s->e) || pretrained_tower(s, c) ||
+		 (c->projected && load_projection(s, c)));
 }
 
 int clip_model_read(struct text_tower *c, const char *dir, struct err *e)
@@ -229,7 +230,7 @@ int clip_model_read(struct text_tower *c, const char *dir, struct err *e)
 		return -1;
 	if (!pretrained_open(&s.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e)) {
 		bad = load_all(&s, c, &kind);
-		safetensors_close(&s.st);
+		bad |= pretrained_close(&s, c);
 	}
 	if (bad)
 		text_tower_free(c);

@@ -1,6 +1,7 @@
 #include "formats/encoders/pretrained.h"
 
 #include "base/file.h"
+#include "base/half.h"
 #include "base/mem.h"
 #include "formats/records/json.h"
 
@@ -144,18 +145,42 @@ static int load(
 
 enum { NAME = 256 };
 
-/* The tensor `at``name``part`: its next `rows` from `first` on, of (of,columns), or of (of) where columns is
- * 0. */
+/* The tensor `at``name``part`, (of,columns), or (of) where columns is 0. */
+static const struct st_tensor *find_part(
+	struct pretrained *from, const char *at, const char *name, const char *part, int of, int columns)
+{
+	char full[NAME];
+
+	snprintf(full, sizeof full, "%s%s%s%s", from->prefix, at, name, part);
+	return pretrained_need(&from->st, full, columns ? of : 0, columns ? columns : of, from->e);
+}
+
+/* Its next `rows` from `first` on. */
 static int load_part(struct pretrained *from, const char *at, const char *name, const char *part, float *out,
 	int of, int first, int rows, int columns)
 {
 	const size_t each = columns ? (size_t)columns : 1;
-	char full[NAME];
+	const struct st_tensor *t = find_part(from, at, name, part, of, columns);
 
-	snprintf(full, sizeof full, "%s%s%s%s", from->prefix, at, name, part);
-	const struct st_tensor *t =
-		pretrained_need(&from->st, full, columns ? of : 0, columns ? columns : of, from->e);
 	return t ? load(from, t, (size_t)first * each, (size_t)rows * each, out) : -1;
+}
+
+/* The same of weights, of which half floats stay where they are. */
+static int load_weight(struct pretrained *from, const char *at, const char *name, const char *part,
+	struct linear_weight *w, int of, int first, int rows, int columns)
+{
+	const size_t skip = (size_t)first * (size_t)columns, count = (size_t)rows * (size_t)columns;
+	const struct st_tensor *t = find_part(from, at, name, part, of, columns);
+
+	if (!t || w->halves)
+		return t ? 0 : -1;
+	if (t->dtype != ST_F16)
+		return load(from, t, skip, count, (float *)(size_t)w->floats);
+	w->halves = (const char *)t->data + skip * sizeof(uint16_t);
+	const size_t finite = half_count_finite(w->halves, count);
+	return finite == count ? 0
+			       : err_file(from->e, from->st.path, "tensor '%s': item %zu is not finite",
+					 t->name, skip + finite);
 }
 
 int pretrained_load(struct pretrained *from, const char *name, float *out, int rows, int columns)
@@ -165,9 +190,9 @@ int pretrained_load(struct pretrained *from, const char *name, float *out, int r
 }
 
 static int load_linear(struct pretrained *from, const char *at, const char *name,
-	const struct transformer_linear *l, int in, int out)
+	struct transformer_linear *l, int in, int out)
 {
-	return -(load_part(from, at, name, ".weight", l->weight, out, 0, out, in) ||
+	return -(load_weight(from, at, name, ".weight", &l->weight, out, 0, out, in) ||
 		 load_part(from, at, name, ".bias", l->bias, out, 0, out, 0));
 }
 
@@ -179,10 +204,9 @@ static int load_norm(struct pretrained *from, const char *at, const char *name,
 }
 
 /* Query, key and value: thirds of a tensor, or three. */
-static int load_attention(
-	struct pretrained *from, const char *at, const struct transformer_layer *l, int width)
+static int load_attention(struct pretrained *from, const char *at, struct transformer_layer *l, int width)
 {
-	const struct transformer_linear *const parts[] = {&l->query, &l->key, &l->value};
+	struct transformer_linear *const parts[] = {&l->query, &l->key, &l->value};
 	const char *const *names = from->names->attention;
 	int bad = 0;
 
@@ -190,8 +214,8 @@ static int load_attention(
 		if (names[2])
 			bad = load_linear(from, at, names[i], parts[i], width, width);
 		else
-			bad = load_part(from, at, names[0], "", parts[i]->weight, 3 * width, i * width, width,
-				      width) ||
+			bad = load_weight(from, at, names[0], "", &parts[i]->weight, 3 * width, i * width,
+				      width, width) ||
 			      load_part(
 				      from, at, names[1], "", parts[i]->bias, 3 * width, i * width, width, 0);
 	return bad;
@@ -199,8 +223,7 @@ static int load_attention(
 
 static int load_layer(struct pretrained *from, const struct text_tower *t, int i)
 {
-	static const struct transformer_layer none;
-	const struct transformer_layer *l = t->body.layers ? &t->body.layers[i] : &none;
+	struct transformer_layer *l = &t->body.layers[i];
 	const struct pretrained_names *n = from->names;
 	const int width = t->body.width, inner = t->body.inner;
 	char at[64];
@@ -216,12 +239,12 @@ static int load_layer(struct pretrained *from, const struct text_tower *t, int i
 		 load_norm(from, at, n->feed_norm, &l->norm, width));
 }
 
-int pretrained_tower(struct pretrained *from, const struct text_tower *t)
+int pretrained_tower(struct pretrained *from, struct text_tower *t)
 {
 	const struct pretrained_names *n = from->names;
 	const int width = t->body.width;
 
-	if (pretrained_load(from, n->word, t->word, t->words, width) ||
+	if (load_weight(from, "", n->word, "", &t->word, t->words, 0, t->words, width) ||
 		pretrained_load(from, n->position, t->position, t->positions, width) ||
 		(n->type && pretrained_load(from, n->type, t->type, t->types, width)) ||
 		load_norm(from, "", n->norm, &t->norm, width))
@@ -230,4 +253,24 @@ int pretrained_tower(struct pretrained *from, const struct text_tower *t)
 		if (load_layer(from, t, i))
 			return -1;
 	return 0;
+}
+
+static void close_map(void *map)
+{
+	file_unmap(map);
+	free(map);
+}
+
+int pretrained_close(struct pretrained *from, struct text_tower *t)
+{
+	struct file_map *map = mem_alloc(1, sizeof *map, "encoder", from->e);
+
+	if (map) {
+		*map = from->st.map;
+		from->st.is_borrowed = 1;
+		t->file = map;
+		t->close = close_map;
+	}
+	safetensors_close(&from->st);
+	return map ? 0 : -1;
 }

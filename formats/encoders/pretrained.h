@@ -61,5 +61,9 @@ struct pretrained {
  * out is NULL the tensor is only looked for: so a reader looks for all of them before it takes memory. */
 int pretrained_load(struct pretrained *from, const char *name, float *out, int rows, int columns);
 
-/* All of a tower but the projection, in the same way: only looked for, before t has memory. */
-int pretrained_tower(struct pretrained *from, const struct text_tower *t);
+/* All of a tower but the projection, in the same way: only looked for, before t has memory but for its
+ * layers. Half floats of its large matrices are checked then, and used where they lie. */
+int pretrained_tower(struct pretrained *from, struct text_tower *t);
+
+/* Closes from->st, but for the file's map, which the tower keeps. */
+int pretrained_close(struct pretrained *from, struct text_tower *t);

@@ -3,11 +3,23 @@
 #include <stdlib.h>
 #include <string.h>
 
+#if defined __x86_64__
+#include <cpuid.h>
+
+/* Which __builtin_cpu_supports does not know everywhere. */
+static int has_half_floats(void)
+{
+	unsigned a, b, c, d;
+
+	return __get_cpuid(1, &a, &b, &c, &d) && c & bit_F16C;
+}
+#endif
+
 static enum cpu_level of_machine(void)
 {
 #if defined __x86_64__
 	if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma") ||
-		!__builtin_cpu_supports("bmi") || !__builtin_cpu_supports("popcnt"))
+		!__builtin_cpu_supports("bmi") || !__builtin_cpu_supports("popcnt") || !has_half_floats())
 		return CPU_PLAIN;
 	if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
 		__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))

@@ -3,7 +3,7 @@
 
 enum cpu_level {
 	CPU_PLAIN,  /* whatever the compiler assumes: SSE2 on x86-64 */
-	CPU_AVX2,   /* AVX2, FMA, BMI and POPCNT */
+	CPU_AVX2,   /* AVX2, FMA, F16C, BMI and POPCNT */
 	CPU_AVX512, /* AVX-512 F, DQ, BW and VL as well */
 	CPU_LEVELS
 };

@@ -13,13 +13,14 @@ int list_next(const char **rest, struct list_name *name)
 
 int list_has(const char *words, const char *word)
 {
-	const size_t length = strlen(word);
-
 	for (;; words++) {
-		const size_t n = strcspn(words, "|");
-		if (n == length && !memcmp(words, word, n))
+		const char *w = word;
+		while (*w && *w == *words)
+			w++, words++;
+		if (!*w && (!*words || *words == '|'))
 			return 1;
-		words += n;
+		while (*words && *words != '|')
+			words++;
 		if (!*words)
 			return 0;
 	}

@@ -57,13 +57,18 @@ static double middle_of(double a, double b, double c)
 	return fmax(fmin(a, b), fmin(fmax(a, b), c));
 }
 
-/* What is on the wrong side of a pivot is left aside, until the pivot is what is looked for (Hoare 1961). */
 double quantile_weighted(struct quantile_item *items, size_t n, double share)
 {
 	double left = 0;
 
 	for (size_t i = 0; i < n; i++)
 		left += share * items[i].weight;
+	return quantile_passed(items, n, left);
+}
+
+/* What is on the wrong side of a pivot is left aside, until the pivot is what is looked for (Hoare 1961). */
+double quantile_passed(struct quantile_item *items, size_t n, double left)
+{
 	for (;;) {
 		const double pivot = middle_of(items[0].at, items[n / 2].at, items[n - 1].at);
 		double under = 0, here = 0;

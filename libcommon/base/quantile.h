@@ -15,3 +15,5 @@ void quantile_order(struct quantile_item *items, struct quantile_item *other, si
 
 /* Of n > 0 items in any order: where `share` of their weight is passed. They change places. */
 double quantile_weighted(struct quantile_item *items, size_t n, double share);
+/* The same, where so much weight is passed. */
+double quantile_passed(struct quantile_item *items, size_t n, double left);

@@ -2,6 +2,8 @@
 
 #include "base/embed.h"
 
+#include <limits.h>
+#include <stdio.h>
 #include <string.h>
 
 EMBED(things, "libcommon/lang/things.tsv");
@@ -15,31 +17,52 @@ static const char *end_of(const char *p, char mark)
 	return at ? at : end;
 }
 
-/* Whether a word, or its plural ("scissors"), is among the names, which ", " separates. */
-static int names(const char *p, const char *end, const char *lemma, size_t length)
+/* The names of the table, sorted by bytes and then by line. */
+static const struct {
+	char name[THINGS_NAME];
+	int row;
+} named[] = {
+#include "lang/things.inc"
+};
+
+static const size_t named_count = sizeof named / sizeof *named;
+
+/* The first of the names that does not stand before this one. */
+static size_t find_name(const char *name)
 {
-	while (p < end) {
-		const char *comma = memchr(p, ',', (size_t)(end - p));
-		const char *const stop = comma ? comma : end;
-		const size_t n = (size_t)(stop - p);
-		if ((n == length || (n == length + 1 && p[length] == 's')) && !memcmp(p, lemma, length))
-			return 1;
-		p = stop + 2;
+	size_t low = 0, high = named_count;
+
+	while (low < high) {
+		const size_t middle = (low + high) / 2;
+		if (strcmp(named[middle].name, name) < 0)
+			low = middle + 1;
+		else
+			high = middle;
 	}
-	return 0;
+	return low;
+}
+
+/* The row of name i where it is this one. */
+static int row_of(size_t i, const char *name)
+{
+	return i < named_count && !strcmp(named[i].name, name) ? named[i].row : INT_MAX;
 }
 
 void things_find(struct things_rows *to, const char *lemma)
 {
-	const char *const end = (const char *)things_end;
-	const size_t length = strlen(lemma);
-	int row = 0;
+	char plural[THINGS_NAME + 1];
 
 	to->n = 0;
-	for (const char *p = (const char *)things_begin; p < end && to->n < THINGS_ROWS;
-		p = end_of(p, '\n') + 1, row++)
-		if (names(p, end_of(p, '\t'), lemma, length))
-			to->row[to->n++] = row;
+	if (snprintf(plural, sizeof plural, "%ss", lemma) >= (int)sizeof plural)
+		return;
+	for (size_t one = find_name(lemma), more = find_name(plural); to->n < THINGS_ROWS;) {
+		const int a = row_of(one, lemma), b = row_of(more, plural);
+		if (a == INT_MAX && b == INT_MAX)
+			return;
+		to->row[to->n++] = a < b ? a : b;
+		one += a <= b;
+		more += b <= a;
+	}
 }
 
 int things_share(const struct things_rows *a, const struct things_rows *b)

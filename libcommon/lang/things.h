@@ -5,7 +5,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { THINGS_ROWS = 6 };
+enum { THINGS_ROWS = 6, THINGS_NAME = 28 /* bytes of the longest name with its 0 */ };
 
 /* The lines that have a word among their names; a word may name several kinds of things. */
 struct things_rows {
@@ -15,6 +15,7 @@ struct things_rows {
 
 enum things_field { THINGS_NAMES, THINGS_USES, THINGS_HAS };
 
+/* A word's, or its plural's ("scissors"). */
 void things_find(struct things_rows *to, const char *lemma);
 
 /* Whether two words name one kind of thing. */

@@ -49,15 +49,12 @@ static double dense_end(struct quantile_item *items, struct quantile_item *other
 	return end;
 }
 
-/* Both ends of the cloud in direction d, of every `step`th Gaussian: where it gets thin, or, at once, the
- * greatest that is not trimmed. */
-static void reach(
-	const struct cloud *c, size_t step, const double d[3], int is_quick, double *low, double *high)
+/* Both ends of the cloud in direction d: where it gets thin. */
+static void reach(const struct cloud *c, const double d[3], double *low, double *high)
 {
 	struct quantile_item *up = c->items, *down = up + c->n, *other = down + c->n;
-	size_t n = 0;
 
-	for (size_t i = 0; i < c->n; i += step) {
+	for (size_t i = 0; i < c->n; i++) {
 		const double *m = c->means + 3 * i, *s = c->spread + 9 * i;
 		double variance = 0;
 		for (int k = 0; k < 3; k++) {
@@ -66,22 +63,22 @@ static void reach(
 		}
 		const double middle = m[0] * d[0] + m[1] * d[1] + m[2] * d[2],
 			     long_as = EXTENT_SIGMAS * sqrt(variance);
-		up[n] = (struct quantile_item){-(middle + long_as), c->weight[i]};
-		down[n++] = (struct quantile_item){-(-middle + long_as), c->weight[i]};
+		up[i] = (struct quantile_item){-(middle + long_as), c->weight[i]};
+		down[i] = (struct quantile_item){-(-middle + long_as), c->weight[i]};
 	}
-	*high = -(is_quick ? quantile_weighted(up, n, EXTENT_TRIM) : dense_end(up, other, n));
-	*low = is_quick ? quantile_weighted(down, n, EXTENT_TRIM) : dense_end(down, other, n);
+	*high = -dense_end(up, other, c->n);
+	*low = dense_end(down, other, c->n);
 }
 
-/* The box along these axes; to compare its foot alone, along the first two, of every `step`th Gaussian. */
-static struct box box_along(const struct cloud *c, size_t step, const double axes[3][3], int is_foot)
+/* The box along these axes. */
+static struct box box_along(const struct cloud *c, const double axes[3][3])
 {
 	struct box b = {0};
 
 	memcpy(b.axes, axes, sizeof b.axes);
-	for (int k = 0; k < (is_foot ? 2 : 3); k++) {
+	for (int k = 0; k < 3; k++) {
 		double low, high;
-		reach(c, step, axes[k], is_foot, &low, &high);
+		reach(c, axes[k], &low, &high);
 		b.half[k] = fmax(high - low, 0) / 2;
 		for (int d = 0; d < 3; d++)
 			b.centre[d] += (high + low) / 2 * axes[k][d];
@@ -107,15 +104,84 @@ static void axes_at(const double up[3], double angle, double axes[3][3])
 	}
 }
 
-static struct box turned_box(const struct cloud *c, const double up[3])
+/* Of every so many Gaussians: what turns are compared by. */
+struct sample {
+	size_t n;
+	double at[12][LOOKED_AT]; /* mean, and the rows of spread */
+	double weight[LOOKED_AT], trimmed;
+	double middle[LOOKED_AT], long_as[LOOKED_AT]; /* along a direction */
+	struct quantile_item items[LOOKED_AT];
+};
+
+static void take_sample(struct sample *s, const struct cloud *c)
 {
 	const size_t step = 1 + (c->n - 1) / LOOKED_AT;
-	double axes[3][3], least = INFINITY, level = 0, angle = 0;
 
+	s->trimmed = 0;
+	for (size_t i = s->n = 0; i < c->n; i += step, s->n++) {
+		for (size_t k = 0; k < 12; k++)
+			s->at[k][s->n] = k < 3 ? c->means[3 * i + k] : c->spread[9 * i + k - 3];
+		s->weight[s->n] = c->weight[i];
+		s->trimmed += EXTENT_TRIM * c->weight[i];
+	}
+}
+
+#if defined(__x86_64__) && defined(__GLIBC__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+static void
+measure(struct sample *s, double x, double y, double z)
+{
+	for (size_t i = 0; i < s->n; i++) {
+		double variance = 0;
+		for (int k = 3; k < 12; k += 3) {
+			const double along = s->at[k][i] * x + s->at[k + 1][i] * y + s->at[k + 2][i] * z;
+			variance += along * along;
+		}
+		s->middle[i] = s->at[0][i] * x + s->at[1][i] * y + s->at[2][i] * z;
+		s->long_as[i] = EXTENT_SIGMAS * sqrt(variance);
+	}
+}
+
+/* The greatest along the direction, or against it, that is not trimmed, turned round. It is looked for up to
+ * somewhat above that of a direction near this one, `near`; where that is too little, farther up. */
+static double end_along(struct sample *s, double sign, double near, double slack)
+{
+	for (;; slack = slack > 0 ? 4 * slack : INFINITY) {
+		double sum = 0;
+		size_t n = 0;
+		for (size_t i = 0; i < s->n; i++) {
+			const double at = -(sign * s->middle[i] + s->long_as[i]);
+			if (at > near + slack)
+				continue;
+			sum += s->weight[i];
+			s->items[n++] = (struct quantile_item){at, s->weight[i]};
+		}
+		if (sum > s->trimmed || n == s->n)
+			return quantile_passed(s->items, n, s->trimmed);
+	}
+}
+
+/* Half the length along d; `ends` are of a direction near this one, and then of this. */
+static double half_along(struct sample *s, const double d[3], double ends[2])
+{
+	const double slack = (-ends[0] - ends[1]) / TURNS;
+
+	measure(s, d[0], d[1], d[2]);
+	for (int side = 0; side < 2; side++)
+		ends[side] = end_along(s, side ? -1 : 1, ends[side], slack);
+	return fmax(-ends[0] - ends[1], 0) / 2;
+}
+
+static struct box turned_box(const struct cloud *c, struct sample *s, const double up[3])
+{
+	double axes[3][3], ends[2][2] = {{INFINITY, INFINITY}, {INFINITY, INFINITY}};
+	double least = INFINITY, level = 0, angle = 0;
+
+	take_sample(s, c);
 	for (int i = 0; i < TURNS; i++) {
 		axes_at(up, i * PI / 2 / TURNS, axes);
-		const struct box b = box_along(c, step, axes, 1);
-		const double foot = b.half[0] * b.half[1];
+		const double foot = half_along(s, axes[0], ends[0]) * half_along(s, axes[1], ends[1]);
 		if (!i)
 			level = foot;
 		if (foot < least) {
@@ -124,7 +190,7 @@ static struct box turned_box(const struct cloud *c, const double up[3])
 		}
 	}
 	axes_at(up, least < (1 - EXTENT_GAIN) * level ? angle : 0, axes);
-	return box_along(c, 1, axes, 0);
+	return box_along(c, axes);
 }
 
 struct cell {
@@ -298,9 +364,10 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 		mem_alloc(room, sizeof(double), "object", e),
 		mem_alloc(room, 3 * sizeof(struct quantile_item), "object", e)};
 	SCOPED char *kept = mem_alloc(room, 1, "object", e);
+	SCOPED struct sample *sample = mem_alloc(1, sizeof *sample, "object", e);
 
 	*x = (struct extent){.ids = mem_alloc(room, sizeof *ids, "object", e), .weight = c.weight};
-	int bad = !c.means || !c.spread || !c.weight || !c.items || !kept || !x->ids ? -1 : 0;
+	int bad = !c.means || !c.spread || !c.weight || !c.items || !kept || !sample || !x->ids ? -1 : 0;
 	if (!bad && n) {
 		memcpy(x->ids, ids, n * sizeof *ids);
 		fill(&c, s, ids, responses);
@@ -309,8 +376,8 @@ int extent_find(struct extent *x, const struct splats *s, const int32_t *ids, co
 	if (!bad && n) {
 		keep(&c, x->ids, kept);
 		x->n = c.n;
-		x->aligned = box_along(&c, 1, world, 0);
-		x->turned = turned_box(&c, up);
+		x->aligned = box_along(&c, world);
+		x->turned = turned_box(&c, sample, up);
 	}
 	mem_free_all(c.means, c.spread, c.items);
 	if (bad)

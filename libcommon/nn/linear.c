@@ -1,5 +1,6 @@
 #include "nn/linear.h"
 
+#include "base/half.h"
 #include "nn/linear_tile.h"
 
 #include <omp.h>
@@ -9,6 +10,10 @@ enum {
 	ROWS = 384, /* of a that share one packing of b, unless that leaves too few parts for the threads */
 	ROWS_LEAST = 48,
 	PARTS_A_THREAD = 4,
+	TURNED_ROWS =
+		96, /* of the input, and outputs, of a part of a layer: a multiple of every tile's sides */
+	TURNED_OUT = 192,
+	TURNED_OUT_LEAST = 48,
 	SMALL = 1 << 20 /* below this many terms a parallel loop costs more than it saves */
 };
 
@@ -49,6 +54,19 @@ static void turn(float *out, size_t width, const float *from, size_t column)
 #endif
 }
 
+/* out (n,width) gets the first n of each of `count` columns, `column` apart. */
+static void turn_all(float *out, size_t width, const float *from, size_t column, size_t n, size_t count)
+{
+	const size_t whole = n - n % 4, fours = count - count % 4;
+
+	for (size_t j = 0; j < fours; j += 4)
+		for (size_t t = 0; t < whole; t += 4)
+			turn(out + t * width + j, width, from + t + j * column, column);
+	for (size_t j = 0; j < count; j++)
+		for (size_t t = j < fours ? whole : 0; t < n; t++)
+			out[t * width + j] = from[t + j * column];
+}
+
 /* `terms` rows of b from `first` on, columns column to column+count, as (terms,width), then zeros. */
 static void pack(float *out, struct linear_matrix b, size_t first, size_t terms, size_t column, size_t count,
 	size_t width)
@@ -59,10 +77,8 @@ static void pack(float *out, struct linear_matrix b, size_t first, size_t terms,
 		for (size_t t = 0; t < terms; t++)
 			for (size_t j = 0; j < count; j++)
 				out[t * width + j] = from[t * b.row + j];
-	} else if (b.row == 1 && terms % 4 == 0 && count % 4 == 0) {
-		for (size_t t = 0; t < terms; t += 4)
-			for (size_t j = 0; j < count; j += 4)
-				turn(out + t * width + j, width, from + t + j * b.column, b.column);
+	} else if (b.row == 1) {
+		turn_all(out, width, from, b.column, terms, count);
 	} else {
 		for (size_t j = 0; j < count; j++)
 			for (size_t t = 0; t < terms; t++)
@@ -153,7 +169,83 @@ void linear_product_with(const struct linear_tile *tile, float *c, size_t stride
 void linear_product(float *c, size_t stride, const float *start, size_t start_stride, struct linear_matrix a,
 	struct linear_matrix b, size_t m, size_t n, size_t k)
 {
-	linear_product_with(linear_tile_best(n), c, stride, start, start_stride, a, b, m, n, k);
+	linear_product_with(linear_tile_best(m, n), c, stride, start, start_stride, a, b, m, n, k);
+}
+
+void linear_weight_take(float *to, const struct linear_weight *w, size_t first, size_t n)
+{
+	if (w->halves)
+		half_to_floats((const char *)w->halves + 2 * first, n, to);
+	else
+		memcpy(to, w->floats + first, n * sizeof *to);
+}
+
+/* `rows` rows of a layer's weights, `terms` of each, and zeros to `padded` rows: (padded,terms). */
+static void take_weights(float *to, const struct linear_layer *l, size_t row, size_t rows, size_t first,
+	size_t terms, size_t padded)
+{
+	for (size_t i = 0; i < rows; i++)
+		linear_weight_take(to + i * terms, &l->weight, (row + i) * l->in_width + first, terms);
+	memset(to + rows * terms, 0, (padded - rows) * terms * sizeof *to);
+}
+
+/* A part of a layer, turned: out^T = weight in^T. The weights are read where they lie, and the input, of
+ * which there is less, is packed. */
+static void run_turned(const struct linear_tile *tile, const struct linear_layer *l, size_t row, size_t rows,
+	size_t output, size_t outputs)
+{
+	_Alignas(64) float panels[TURNED_ROWS * LINEAR_BLOCK], sums[TURNED_OUT * TURNED_ROWS];
+	_Alignas(64) float left[LINEAR_TILE_ROWS * LINEAR_BLOCK];
+	const struct linear_matrix in = {l->in, 1, l->in_width};
+	const size_t padded = (rows + tile->columns - 1) / tile->columns * tile->columns;
+
+	for (size_t i = 0; i < TURNED_OUT; i++)
+		for (size_t j = 0; j < padded; j++)
+			sums[i * TURNED_ROWS + j] = l->bias && i < outputs ? l->bias[output + i] : 0;
+	for (size_t first = 0; first < l->in_width; first += LINEAR_BLOCK) {
+		const size_t terms = least(l->in_width - first, LINEAR_BLOCK);
+		for (size_t j = 0; j < rows; j += tile->columns)
+			pack(panels + j * terms, in, first, terms, row + j, least(rows - j, tile->columns),
+				tile->columns);
+		for (size_t i = 0; i < outputs; i += tile->rows) {
+			const size_t height = least(outputs - i, tile->rows);
+			const float *weights = left;
+			size_t stride = terms;
+			if (l->weight.floats && height == tile->rows) {
+				weights = l->weight.floats + (output + i) * l->in_width + first;
+				stride = l->in_width;
+			} else {
+				take_weights(left, l, output + i, height, first, terms, tile->rows);
+			}
+			for (size_t j = 0; j < rows; j += tile->columns) {
+				float *sum = sums + i * TURNED_ROWS + j;
+				tile->run(sum, TURNED_ROWS, sum, TURNED_ROWS, weights, stride, 1,
+					panels + j * terms, terms);
+			}
+		}
+	}
+	turn_all(l->out + row * l->out_width + output, l->out_width, sums, TURNED_ROWS, rows, outputs);
+}
+
+void linear_layer_with(const struct linear_tile *tile, const struct linear_layer *l)
+{
+	const size_t columns = (l->rows + TURNED_ROWS - 1) / TURNED_ROWS,
+		     wanted = (size_t)omp_get_max_threads();
+	size_t outputs = TURNED_OUT;
+
+	while (outputs > TURNED_OUT_LEAST && columns * ((l->out_width + outputs - 1) / outputs) < wanted)
+		outputs /= 2;
+#pragma omp parallel for collapse(2)                                                                         \
+	schedule(dynamic) if ((double)l->rows * (double)l->in_width * (double)l->out_width > SMALL)
+	for (size_t j = 0; j < l->rows; j += TURNED_ROWS)
+		for (size_t i = 0; i < l->out_width; i += outputs)
+			run_turned(tile, l, j, least(TURNED_ROWS, l->rows - j), i,
+				least(outputs, l->out_width - i));
+}
+
+void linear_layer_run(const struct linear_layer *l)
+{
+	linear_layer_with(linear_tile_best(l->out_width, l->rows), l);
 }
 
 void linear_forward(float *out, const float *in, const float *weight, const float *bias, size_t rows,
@@ -161,7 +253,11 @@ void linear_forward(float *out, const float *in, const float *weight, const floa
 {
 	struct linear_matrix a = {in, in_width, 1}, b = {weight, 1, in_width};
 
-	linear_product(out, out_width, bias, 0, a, b, rows, out_width, in_width);
+	if (rows < out_width)
+		linear_layer_run(
+			&(struct linear_layer){out, in, {weight, NULL}, bias, rows, in_width, out_width});
+	else
+		linear_product(out, out_width, bias, 0, a, b, rows, out_width, in_width);
 }
 
 /* Sums of the columns, rows in order, in blocks as in a product. */

@@ -16,6 +16,25 @@ enum { LINEAR_BLOCK = 256 }; /* terms summed before they are added to the result
 void linear_forward(float *out, const float *in, const float *weight, const float *bias, size_t rows,
 	size_t in_width, size_t out_width);
 
+/* Weights that are only read: floats, or half floats at any address, as in a file that is mapped. */
+struct linear_weight {
+	const float *floats; /* NULL: halves */
+	const void *halves;
+};
+
+/* Copies n of them, from the `first` on. */
+void linear_weight_take(float *to, const struct linear_weight *w, size_t first, size_t n);
+
+/* The same layer with its weights where they lie; the same bytes as of the weights as floats. */
+struct linear_layer {
+	float *out;	 /* (rows,out_width) */
+	const float *in; /* (rows,in_width) */
+	struct linear_weight weight;
+	const float *bias; /* NULL: none */
+	size_t rows, in_width, out_width;
+};
+void linear_layer_run(const struct linear_layer *l);
+
 /* The gradients of linear_forward, given dout (rows,out_width):
  *   din (rows,in_width) = dout weight;          overwritten; NULL: not wanted
  *   dweight (out_width,in_width) += dout^T in;  NULL: not wanted

@@ -5,7 +5,7 @@
 
 #include <stddef.h>
 
-enum { LINEAR_TILE_ROWS = 12, LINEAR_TILE_COLUMNS = 32 }; /* the largest of all tiles */
+enum { LINEAR_TILE_ROWS = 24, LINEAR_TILE_COLUMNS = 32 }; /* the largest of all tiles */
 
 struct linear_tile {
 	const char *name;
@@ -21,9 +21,10 @@ struct linear_tile {
 /* The tiles that this processor can run, best first; NULL past the last. There is always tile 0. */
 const struct linear_tile *linear_tile_get(int i);
 
-/* The one to use for a result of so many columns. */
-const struct linear_tile *linear_tile_best(size_t columns);
+/* The one to use for a result of so many rows and columns. */
+const struct linear_tile *linear_tile_best(size_t rows, size_t columns);
 
-/* linear_product with a tile of one's choice. */
+/* linear_product and linear_layer_run with a tile of one's choice. */
+void linear_layer_with(const struct linear_tile *tile, const struct linear_layer *l);
 void linear_product_with(const struct linear_tile *tile, float *c, size_t stride, const float *start,
 	size_t start_stride, struct linear_matrix a, struct linear_matrix b, size_t m, size_t n, size_t k);

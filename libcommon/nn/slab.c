@@ -19,6 +19,14 @@ float *slab_take(struct slab *s, size_t rows, size_t columns)
 	return at;
 }
 
+void slab_take_weight(struct slab *s, struct linear_weight *w, size_t rows, size_t columns)
+{
+	if (!w->halves)
+		w->floats = slab_take(s, rows, columns);
+	else if (s->hash)
+		*s->hash = hash64_halves(w->halves, rows * columns, *s->hash);
+}
+
 float *slab_alloc(void (*lay_out)(void *of, struct slab *s), void *of, const char *what, struct err *e)
 {
 	struct slab count = {0}, place = {0};

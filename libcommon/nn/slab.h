@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/err.h"
+#include "nn/linear.h"
 
 #include <stdint.h>
 
@@ -16,6 +17,9 @@ struct slab {
 
 /* rows x columns floats, beginning on a 64-byte boundary. */
 float *slab_take(struct slab *s, size_t rows, size_t columns);
+
+/* The same of weights, unless they are halves, which lie elsewhere. Their hash is that of floats. */
+void slab_take_weight(struct slab *s, struct linear_weight *w, size_t rows, size_t columns);
 
 /* Allocates what `lay_out` takes for `of`, not initialised, and has it point `of`'s arrays into it: the block
  * to free(), or NULL with *e set, which names `what`. */

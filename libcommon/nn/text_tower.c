@@ -9,7 +9,7 @@ static void lay_out(void *of, struct slab *s)
 	struct text_tower *t = of;
 	const size_t width = (size_t)t->body.width;
 
-	t->word = slab_take(s, (size_t)t->words, width);
+	slab_take_weight(s, &t->word, (size_t)t->words, width);
 	t->position = slab_take(s, (size_t)t->positions, width);
 	if (t->body.is_norm_first) {
 		transformer_take(&t->body, s);
@@ -22,17 +22,16 @@ static void lay_out(void *of, struct slab *s)
 	}
 }
 
+int text_tower_alloc_layers(struct text_tower *t, struct err *e)
+{
+	t->body.layers = mem_zalloc((size_t)t->body.layer_count, sizeof *t->body.layers, "encoder", e);
+	return t->body.layers ? 0 : -1;
+}
+
 int text_tower_alloc(struct text_tower *t, struct err *e)
 {
-	t->slab = NULL;
-	t->body.layers = mem_zalloc((size_t)t->body.layer_count, sizeof *t->body.layers, "encoder", e);
-	if (t->body.layers)
-		t->slab = slab_alloc(lay_out, t, "encoder", e);
-	if (!t->slab) {
-		text_tower_free(t);
-		return -1;
-	}
-	return 0;
+	t->slab = slab_alloc(lay_out, t, "encoder", e);
+	return t->slab ? 0 : -1;
 }
 
 uint64_t text_tower_hash(const struct text_tower *t, uint64_t seed)
@@ -47,6 +46,8 @@ uint64_t text_tower_hash(const struct text_tower *t, uint64_t seed)
 void text_tower_free(struct text_tower *t)
 {
 	mem_free_all(t->body.layers, t->slab);
+	if (t->file)
+		t->close(t->file);
 	*t = (struct text_tower){0};
 }
 
@@ -62,11 +63,11 @@ static void embed(const struct text_tower *t, const int32_t *ids, const size_t *
 #pragma omp parallel for schedule(static)
 	for (size_t s = 0; s < n; s++)
 		for (size_t r = starts[s]; r < starts[s + 1]; r++) {
-			const float *word = t->word + (size_t)ids[r] * width;
 			const float *position = t->position + (r - starts[s]) * width;
 			float *row = x + (r - starts[0]) * width;
+			linear_weight_take(row, &t->word, (size_t)ids[r] * width, width);
 			for (size_t i = 0; i < width; i++)
-				row[i] = (t->type ? word[i] + t->type[i] : word[i]) + position[i];
+				row[i] = (t->type ? row[i] + t->type[i] : row[i]) + position[i];
 			if (!t->body.is_norm_first)
 				transformer_normalise(&t->body, row, &t->norm);
 		}
@@ -112,5 +113,5 @@ void text_tower_static(const struct text_tower *t, const int32_t *ids, size_t n,
 	const size_t width = (size_t)t->body.width;
 
 	for (size_t k = 0; k < n; k++)
-		memcpy(out + k * width, t->word + (size_t)ids[k] * width, width * sizeof *out);
+		linear_weight_take(out + k * width, &t->word, (size_t)ids[k] * width, width);
 }

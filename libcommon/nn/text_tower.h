@@ -20,14 +20,18 @@ struct text_tower {
 	int types;	      /* the same of BERT's third */
 	int projected;	      /* columns of y; 0: there is no projection, and y has body.width */
 	struct transformer body;
-	float *word, *position, *type; /* (words,width), (positions,width), (types,width) */
+	struct linear_weight word; /* (words,width) */
+	float *position, *type;	   /* (positions,width), (types,width) */
 	struct transformer_norm norm;
 	float *projection; /* (projected,width) */
-	float *slab;	   /* all of the above lie in it */
+	float *slab;	   /* all of the above lie in it, but halves */
+	void *file;	   /* where halves lie, and what closes it; NULL: there are none */
+	void (*close)(void *file);
 };
 
-/* Given the sizes (words to projected, and body's), allocates the slab, not initialised, and points the
- * arrays into it. */
+/* Given the sizes (words to projected, and body's), allocates the layers, whose weights may then be set to
+ * halves; then the slab, not initialised, and points the other arrays into it. */
+int text_tower_alloc_layers(struct text_tower *t, struct err *e);
 int text_tower_alloc(struct text_tower *t, struct err *e);
 void text_tower_free(struct text_tower *t);
 

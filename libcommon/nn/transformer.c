@@ -1,13 +1,12 @@
 #include "nn/transformer.h"
 
 #include "base/mem.h"
-#include "nn/linear.h"
 
 #include <math.h>
 
 static void take_linear(struct slab *s, struct transformer_linear *linear, int in, int out)
 {
-	linear->weight = slab_take(s, (size_t)out, (size_t)in);
+	slab_take_weight(s, &linear->weight, (size_t)out, (size_t)in);
 	linear->bias = slab_take(s, (size_t)out, 1);
 }
 
@@ -82,14 +81,49 @@ static void add(float *x, const float *y, size_t n)
 		x[i] += y[i];
 }
 
+/* erf(z) = z p(z z / 8 - 1) within 1e-8 for |z| < 4, by interpolation at Chebyshev's points; 1 in a float
+ * beyond. In double, as a float's digits are lost where 1 + erf is small. */
+#if defined(__x86_64__) && defined(__GLIBC__)
+__attribute__((target_clones("avx512f", "avx2", "default")))
+#endif
+static void
+gelu(float *x, size_t n)
+{
+	static const double p[] = {0.000572087096343, -0.00137052044348, 0.000713755510814, -0.00108552910178,
+		0.00541989023641, -0.0100730577306, 0.0140410128124, -0.0216723195703, 0.0331549293389,
+		-0.0460103311746, 0.0598717301071, -0.0746883651476, 0.0902100852368, -0.107713284331,
+		0.131675094101, -0.176576173922, 0.353530995643};
+
+	for (size_t i = 0; i < n; i++) {
+		const double v = x[i], z = v * 0.70710678118654752, u = z * z * 0.125 - 1;
+		double sum = p[0];
+		for (size_t k = 1; k < sizeof p / sizeof *p; k++)
+			sum = sum * u + p[k];
+		sum *= z;
+		sum = z >= 4 ? 1 : z <= -4 ? -1 : sum;
+		x[i] = (float)(0.5 * v * (1 + sum));
+	}
+}
+
+void transformer_gelu(float *x, size_t n)
+{
+	enum { BLOCK = 4096 };
+
+#pragma omp parallel for schedule(static) if (n > BLOCK)
+	for (size_t i = 0; i < n; i += BLOCK)
+		gelu(x + i, n - i < BLOCK ? n - i : BLOCK);
+}
+
 static void activate(enum transformer_activation kind, float *x, size_t n)
 {
+	if (kind == TRANSFORMER_GELU) {
+		transformer_gelu(x, n);
+		return;
+	}
 #pragma omp parallel for schedule(static)
 	for (size_t i = 0; i < n; i++) {
 		float v = x[i];
-		if (kind == TRANSFORMER_GELU)
-			x[i] = 0.5f * v * (1 + erff(v * 0.70710678f));
-		else if (kind == TRANSFORMER_GELU_TANH)
+		if (kind == TRANSFORMER_GELU_TANH)
 			x[i] = 0.5f * v * (1 + tanhf(0.79788456f * (v + 0.044715f * v * v * v)));
 		else if (kind == TRANSFORMER_QUICK_GELU)
 			x[i] = v / (1 + expf(-1.702f * v));
@@ -166,15 +200,21 @@ int transformer_scratch(const struct transformer *t, size_t rows, size_t longest
 	return count.bad;
 }
 
+static void apply(
+	float *out, const float *x, const struct transformer_linear *l, size_t rows, size_t in, size_t width)
+{
+	linear_layer_run(&(struct linear_layer){out, x, l->weight, l->bias, rows, in, width});
+}
+
 /* w->query = attend(x) */
 static void attend_all(const struct transformer *t, const struct transformer_layer *layer, struct work *w,
 	const size_t *starts, size_t n, const float *x)
 {
 	size_t width = (size_t)t->width, heads = (size_t)t->heads, d = width / heads;
 
-	linear_forward(w->query, x, layer->query.weight, layer->query.bias, w->rows, width, width);
-	linear_forward(w->key, x, layer->key.weight, layer->key.bias, w->rows, width, width);
-	linear_forward(w->value, x, layer->value.weight, layer->value.bias, w->rows, width, width);
+	apply(w->query, x, &layer->query, w->rows, width, width);
+	apply(w->key, x, &layer->key, w->rows, width, width);
+	apply(w->value, x, &layer->value, w->rows, width, width);
 #pragma omp parallel for collapse(2) schedule(dynamic)
 	for (size_t s = 0; s < n; s++)
 		for (size_t h = 0; h < heads; h++) {
@@ -185,8 +225,7 @@ static void attend_all(const struct transformer *t, const struct transformer_lay
 				attend(t, w->query + at, w->key + at, w->value + at, w->context + at, score,
 					tokens);
 		}
-	linear_forward(w->query, w->context, layer->attention_out.weight, layer->attention_out.bias, w->rows,
-		width, width);
+	apply(w->query, w->context, &layer->attention_out, w->rows, width, width);
 }
 
 /* w->query = feed(x) */
@@ -195,9 +234,9 @@ static void feed(
 {
 	size_t width = (size_t)t->width, inner = (size_t)t->inner;
 
-	linear_forward(w->inner, x, layer->inner.weight, layer->inner.bias, w->rows, width, inner);
+	apply(w->inner, x, &layer->inner, w->rows, width, inner);
 	activate(t->activation, w->inner, w->rows * inner);
-	linear_forward(w->query, w->inner, layer->outer.weight, layer->outer.bias, w->rows, inner, width);
+	apply(w->query, w->inner, &layer->outer, w->rows, inner, width);
 }
 
 static void run_layer(const struct transformer *t, const struct transformer_layer *layer, struct work *w,

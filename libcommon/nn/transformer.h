@@ -23,7 +23,8 @@ enum transformer_activation {
 };
 
 struct transformer_linear {
-	float *weight, *bias; /* (out,in) row-major, (out) */
+	struct linear_weight weight; /* (out,in) row-major */
+	float *bias;		     /* (out) */
 };
 
 struct transformer_norm {
@@ -42,6 +43,9 @@ struct transformer {
 	int is_causal, is_norm_first;
 	struct transformer_layer *layers; /* (layer_count), the owner's; their arrays lie in a slab */
 };
+
+/* x (n) = x Phi(x), within 6e-8 (1 + |x|). Kernel: cannot fail. */
+void transformer_gelu(float *x, size_t n);
 
 /* The arrays of all layers, and of a norm. */
 void transformer_take(struct transformer *t, struct slab *s);

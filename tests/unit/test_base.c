@@ -60,14 +60,26 @@ static void base64_known_answers(void)
 
 static void half_round_trip(void)
 {
-	int wrong = 0;
+	enum { ALL = 65536 };
+	static uint16_t halves[ALL];
+	static float floats[ALL];
+	int wrong = 0, others = 0;
 
-	for (uint32_t h = 0; h < 65536; h++) {
+	for (int h = 0; h < ALL; h++)
+		halves[h] = (uint16_t)h;
+	half_to_floats(
+		halves + 1, ALL - 1, floats + 1); /* at any address, by whole vectors and what is left */
+	for (int h = 0; h < ALL; h++) {
 		float f = half_to_float((uint16_t)h);
 		if (!isnan(f) && half_of_float(f) != h)
 			wrong++;
+		others += memcmp(&f, floats + h, sizeof f) != 0;
 	}
 	CHECK(wrong == 0, "%d halves change on the way through float", wrong);
+	CHECK(others == 0, "%d halves have another float by vectors", others);
+	CHECK(half_count_finite(halves, 0x7c00) == 0x7c00 && half_count_finite(halves, ALL) == 0x7c00 &&
+			half_count_finite(halves + 0x8000, ALL - 0x8000) == 0x7c00,
+		"finite halves");
 	CHECK(half_of_float(1.00048828125f) == 0x3c00, "a tie rounds to even");
 	CHECK(half_of_float(65520) == 0x7c00, "65520 rounds to infinity");
 }

@@ -120,6 +120,29 @@ static int is_well_formed(const char *text, size_t length, char between)
 	return length > 0;
 }
 
+/* The lines that have a name, by looking at each. */
+static void check_lines_of(const char *name, size_t n)
+{
+	struct things_rows found;
+	char word[64];
+	const char *text;
+	size_t length;
+	int k = 0;
+
+	snprintf(word, sizeof word, "%.*s", (int)n, name);
+	things_find(&found, word);
+	for (int row = 0; k < THINGS_ROWS && (text = things_text(row, THINGS_NAMES, &length)); row++)
+		for (const char *p = text; p < text + length; p += strcspn(p, ",\t") + 2) {
+			const size_t own = strcspn(p, ",\t");
+			if ((own == n || (own == n + 1 && p[n] == 's')) && !memcmp(p, word, n)) {
+				CHECK(k < found.n && found.row[k] == row, "%s is not in line %d", word, row);
+				k++;
+				break;
+			}
+		}
+	CHECK(k == found.n, "%s: %d lines, not %d", word, found.n, k);
+}
+
 static void things(void)
 {
 	static const char between[] = {',', ';', ','};
@@ -134,6 +157,12 @@ static void things(void)
 				row + 1, field + 1, (int)length, text);
 		}
 	CHECK(row > 1000, "%d things", row);
+	for (int i = 0; i < row; i += 7) {
+		text = things_text(i, THINGS_NAMES, &length);
+		const size_t n = strcspn(text, ",\t");
+		check_lines_of(text, n);
+		check_lines_of(text, n - (text[n - 1] == 's'));
+	}
 	CHECK(name_one_thing("laptop", "chromebook") && name_one_thing("chromebook", "laptop") &&
 			!name_one_thing("laptop", "kettle"),
 		"names of a laptop");

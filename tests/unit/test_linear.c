@@ -1,5 +1,6 @@
 #include "unit.h"
 
+#include "base/half.h"
 #include "base/rng.h"
 #include "nn/linear.h"
 #include "nn/linear_tile.h"
@@ -31,8 +32,8 @@ static void forward64(double *out, const float *in, const double *weight, const 
 		}
 }
 
-static const size_t shapes[][3] = {{1, 1, 1}, {1, 384, 7}, {13, 3, 16}, {12, 256, 32}, {25, 257, 33},
-	{7, 600, 65}, {400, 16, 31}, {49, 40, 128}, {3, 5, 0}, {0, 4, 4}, {4, 0, 5}};
+static const size_t shapes[][3] = {{1, 1, 1}, {1, 384, 7}, {130, 520, 413}, {13, 3, 16}, {12, 256, 32},
+	{25, 257, 33}, {7, 600, 65}, {400, 16, 31}, {49, 40, 128}, {3, 5, 0}, {0, 4, 4}, {4, 0, 5}};
 
 /* Every tile this processor runs, on whole and cut tiles, against float64; the order of sums is fixed, so
  * that the tiles with fma agree to the byte. */
@@ -45,13 +46,18 @@ static void product_all_tiles(void)
 		float *x = malloc((rows * in + 1) * 4), *w = malloc((out * in + 1) * 4),
 		      *bias = malloc((out + 1) * 4);
 		float *y = malloc((count + 1) * 4), *first = malloc((count + 1) * 4);
+		float *z = malloc((count + 1) * 4);
+		char *halves = malloc(1 + 2 * out * in); /* at an odd address */
 		double *w64 = malloc((out * in + 1) * 8), *y64 = malloc((count + 1) * 8);
 		rng_seed(&r, s, 1);
 		fill(x, rows * in, &r);
 		fill(w, out * in, &r);
 		fill(bias, out, &r);
-		for (size_t i = 0; i < out * in; i++)
-			w64[i] = w[i];
+		for (size_t i = 0; i < out * in; i++) {
+			const uint16_t half = half_of_float(w[i]);
+			memcpy(halves + 1 + 2 * i, &half, sizeof half);
+			w64[i] = w[i] = half_to_float(half);
+		}
 		forward64(y64, x, w64, bias, rows, in, out);
 		linear_forward(first, x, w, bias, rows, in, out);
 		for (int t = 0; linear_tile_get(t); t++) {
@@ -66,6 +72,15 @@ static void product_all_tiles(void)
 			CHECK(y[count] == 42, "%s, shape %zu: wrote past the end", tile->name, s);
 			CHECK(!strcmp(tile->name, "plain") || same_bytes(y, first, count * 4),
 				"%s, shape %zu: other bytes than the best tile", tile->name, s);
+			for (int is_half = 0; is_half < 2; is_half++) {
+				struct linear_layer l = {z, x, {w, NULL}, bias, rows, in, out};
+				if (is_half)
+					l.weight = (struct linear_weight){.halves = halves + 1};
+				z[count] = 42;
+				linear_layer_with(tile, &l);
+				CHECK(same_bytes(y, z, (count + 1) * 4), "%s, shape %zu, %s: other bytes",
+					tile->name, s, is_half ? "halves" : "turned");
+			}
 		}
 		free(x);
 		free(w);
@@ -74,6 +89,8 @@ static void product_all_tiles(void)
 		free(first);
 		free(w64);
 		free(y64);
+		free(z);
+		free(halves);
 	}
 }
 
