@@ -11,13 +11,18 @@
 #include <omp.h>
 #include <stdio.h>
 
+enum { BOTH, GRAMMAR };
+
+static const char *weights, *list;
+static int method = BOTH;
+
 static int put_parses(const struct parser *parser, const struct text *t, FILE *out, struct err *e)
 {
 	for (size_t r = 0; r < t->n; r++) {
 		struct parser_vectors v = {.width = t->width};
 		SCOPED_BY(parse_free) struct parse p = {0};
 		if (t->pieces)
-			v = (struct parser_vectors){t->pieces[r], text_middle(t, r),
+			v = (struct parser_vectors){t->pieces[r], method == BOTH ? text_middle(t, r) : NULL,
 				(int)(t->offsets[r + 1] - t->offsets[r]), t->width};
 		if (parse_sentence(&p, parser, t->texts[r], &v, e))
 			return -1;
@@ -28,16 +33,11 @@ static int put_parses(const struct parser *parser, const struct text *t, FILE *o
 	return 0;
 }
 
-enum { BOTH, GRAMMAR };
-
-static const char *weights, *list;
-static int method = BOTH;
-
 static const struct cli_option options[] = {
 	CLI_TEXT("parser", &weights, "PARSER",
 		"weights of the learnt parser (default: those that come with the program)"),
 	CLI_ONE_OF("method", &method, "both|grammar",
-		"grammar and what was learnt on word vectors, or grammar alone (default both)"),
+		"by word vectors and closed-class words, or by closed-class words alone (default both)"),
 	CLI_TEXT("without", &list, "RULE,...",
 		"leave out rules: isnt, viewer, over_by, corner, doubled, empty, who, compared, group, content, one_of, members, companion"),
 	{0},
@@ -57,16 +57,15 @@ static int parse_all(
 	const struct cli *c, const char *path, struct parser_weights *w, unsigned without, struct err *e)
 {
 	SCOPED_BY(text_free) struct text t = {0};
-	struct parser parser = {.weights = method == BOTH ? w : NULL, .without = without};
+	struct parser parser = {.weights = w, .without = without};
 	struct file_out out;
 
-	if (method == BOTH && (weights ? parser_weights_read(w, weights, e) : parser_weights_default(w, e)))
-		return -1;
-	if (text_read(&t, path, e))
+	if ((weights ? parser_weights_read(w, weights, e) : parser_weights_default(w, e)) ||
+		text_read(&t, path, e))
 		return -1;
 	parser.encoder = t.encoder.hex;
 	const int is_other = *w->encoder && *t.encoder.hex && strcmp(w->encoder, t.encoder.hex);
-	if (parser.weights && (!t.pieces || !t.middle || t.width != w->width || is_other))
+	if (method == BOTH && (!t.pieces || !t.middle || t.width != w->width || is_other))
 		cli_warn(c, "%s: %s: by grammar alone", file_name(path),
 			!t.pieces   ? "has no word pieces"
 			: !t.middle ? "has no tensor 'middle'"

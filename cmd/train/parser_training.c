@@ -126,17 +126,14 @@ static void say(void *context, int member, int epoch, double loss)
 	report_note(context, 1, "network %d, epoch %d: loss %.4f", member + 1, epoch + 1, loss);
 }
 
-/* Networks of zeros, as many as are asked for. */
+/* Networks of zeros, as many as are asked for, and that of grammar alone. */
 static int make_members(struct parser_weights *w, int width, long long members, struct err *e)
 {
-	if (parser_weights_make(w, width, e))
-		return -1;
-	for (long long k = 1; k < members; k++, w = w->next) {
-		w->next = mem_zalloc(1, sizeof *w->next, "parser's weights", e);
-		if (!w->next || parser_weights_make(w->next, width, e))
-			return -1;
-	}
-	return 0;
+	int bad = parser_weights_make(w, width, e) || parser_weights_add(&w->grammar, 0, e);
+
+	for (long long k = 1; k < members && !bad; k++, w = w->next)
+		bad = parser_weights_add(&w->next, width, e);
+	return bad;
 }
 
 int parser_train(const struct parser_training_options *o, const struct report *to, struct err *e)

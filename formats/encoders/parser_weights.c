@@ -13,16 +13,17 @@
 EMBED(parser_default, "formats/encoders/parser_default.safetensors");
 extern const unsigned char parser_default_begin[], parser_default_end[];
 
-enum { NAME_LENGTH = 40, VERSION_READ = 6 };
+enum { NAME_LENGTH = 48, VERSION_READ = 7, GRAMMAR = -1 };
 
-/* "vector.weight" of the first member, "1.vector.weight" of the next; tail: "", or ".scale" for the factors
- * of a matrix's rows. */
+/* "vector.weight" of the first member, "1.vector.weight" of the next, "grammar.vector.weight" of GRAMMAR;
+ * tail: "", or ".scale" for the factors of a matrix's rows. */
 static const char *name_of(char out[NAME_LENGTH], int member, const char *part, const char *tail)
 {
+	char number[12] = "";
+
 	if (member)
-		snprintf(out, NAME_LENGTH, "%d.%s%s", member, part, tail);
-	else
-		snprintf(out, NAME_LENGTH, "%s%s", part, tail);
+		snprintf(number, sizeof number, "%d.", member);
+	snprintf(out, NAME_LENGTH, "%s%s%s", member == GRAMMAR ? "grammar." : number, part, tail);
 	return out;
 }
 
@@ -93,16 +94,16 @@ static int take_tensors(struct parser_weights *w, const struct safetensors *st, 
 	if (in.bad || fingerprint_read(&encoder, st, "encoder", e) || parser_weights_make(w, width, e))
 		return -1;
 	memcpy(w->encoder, encoder.hex, sizeof w->encoder);
-	for (int member = 0;; member++) {
+	if (parser_weights_add(&w->grammar, 0, e) || take_member(w->grammar, GRAMMAR, st, e))
+		return -1;
+	for (int member = 0;; member++, w = w->next) {
 		if (take_member(w, member, st, e))
 			return -1;
 		if (member + 1 == PARSER_MEMBERS ||
 			!safetensors_find(st, name_of(name, member + 1, "vector.weight", "")))
 			return 0;
-		w->next = mem_zalloc(1, sizeof *w->next, "parser's weights", e);
-		if (!w->next || parser_weights_make(w->next, width, e))
+		if (parser_weights_add(&w->next, width, e))
 			return -1;
-		w = w->next;
 	}
 }
 
@@ -171,23 +172,30 @@ static void put_part(struct arrays_out *out, int member, const struct parser_par
 	}
 }
 
+static void put_member(struct arrays_out *out, int member, const struct parser_weights *w)
+{
+	struct parser_part parts[PARSER_PARTS];
+	const float *from = w->slab;
+
+	parser_parts(w->width, parts);
+	for (int i = 0; i < PARSER_PARTS; i++) {
+		put_part(out, member, &parts[i], from);
+		from += parts[i].rows * (parts[i].columns ? parts[i].columns : 1);
+	}
+}
+
 int parser_weights_write(
 	const struct parser_weights *w, const char *path, long long seed, const char *source, struct err *e)
 {
-	struct parser_part parts[PARSER_PARTS];
 	struct arrays_out out;
 
-	arrays_out_begin(&out, path, "refer.parser", "6", "parse-train", "", seed, e);
+	arrays_out_begin(&out, path, "refer.parser", "7", "parse-train", "", seed, e);
 	arrays_out_text(&out, "source", source);
 	arrays_out_text(&out, "encoder", w->encoder[0] ? w->encoder : NULL);
-	for (int member = 0; w && member < PARSER_MEMBERS; member++, w = w->next) {
-		const float *from = w->slab;
-		parser_parts(w->width, parts);
-		for (int i = 0; i < PARSER_PARTS; i++) {
-			put_part(&out, member, &parts[i], from);
-			from += parts[i].rows * (parts[i].columns ? parts[i].columns : 1);
-		}
-	}
+	if (w->grammar)
+		put_member(&out, GRAMMAR, w->grammar);
+	for (int member = 0; w && member < PARSER_MEMBERS; member++, w = w->next)
+		put_member(&out, member, w);
 	return arrays_out_end(&out);
 }
 

@@ -1,5 +1,5 @@
-/* What a word is in a sentence and what it hangs on: the common ground of the grammar, the learnt parser and
- * the sentences that it learns from. parse_build makes a parse of it.
+/* What a word is in a sentence and what it hangs on: the common ground of the parser and the sentences that
+ * it learns from. parse_build makes a parse of it.
  *
  *   "the small mug on the plate": small: predicate (smaller) of the target; mug: target; on: predicate of the
  *   target; plate: anchor of "on". */
@@ -41,9 +41,6 @@ int role_is_phrase(enum word_role r);
 
 /* The word says nothing. */
 void analysis_give_up(struct analysis_word *w);
-
-/* By closed-class words and the order of words alone. */
-void grammar_analyse(struct analysis *a, const struct tokens *t);
 
 /* Makes every head one that its role may have, without a circle; what then hangs on nothing hangs on ROOT. */
 void analysis_repair(struct analysis *a);

@@ -3,13 +3,11 @@
 #include "base/mem.h"
 #include "lang/parser_net.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-static int learnt_analyse(struct analysis *a, const struct tokens *t, const struct parser *parser,
+static int analyse(struct analysis *a, const struct tokens *t, const struct parser_weights *w,
 	const struct parser_vectors *v, double *sure, struct err *e)
 {
-	const struct parser_weights *w = parser->weights;
 	struct parser_batch b;
 	struct parser_features features[TOKENS_MOST];
 	float *vectors;
@@ -29,28 +27,28 @@ static int learnt_analyse(struct analysis *a, const struct tokens *t, const stru
 	return vectors ? 0 : -1;
 }
 
-/* 1 where the weights were learnt on vectors such as these. */
-static int are_mine(const struct parser *parser, const struct parser_vectors *v)
+/* The weights where they were learnt on vectors such as these, else those of grammar alone. */
+static const struct parser_weights *weights_for(const struct parser *parser, const struct parser_vectors *v)
 {
 	const struct parser_weights *w = parser->weights;
+	const int is_known = w->encoder[0] && parser->encoder && parser->encoder[0];
 
-	if (!w || !v || !v->vectors || v->width != w->width)
-		return 0;
-	return !w->encoder[0] || !parser->encoder || !parser->encoder[0] ||
-	       !strcmp(w->encoder, parser->encoder);
+	if (!v->vectors || v->width != w->width)
+		return w->grammar;
+	return is_known && strcmp(w->encoder, parser->encoder) ? w->grammar : w;
 }
 
 int parse_sentence(struct parse *p, const struct parser *parser, const char *text,
 	const struct parser_vectors *v, struct err *e)
 {
+	const struct parser_vectors none = {0};
+	struct analysis a = {0};
 	struct tokens t;
-	struct analysis a;
 	double sure = 1;
 
-	tokens_take(&t, text, v ? v->pieces : NULL, parser->known, parser->known_count);
-	if (!are_mine(parser, v) || !t.n)
-		grammar_analyse(&a, &t);
-	else if (learnt_analyse(&a, &t, parser, v, &sure, e))
+	v = v ? v : &none;
+	tokens_take(&t, text, v->pieces, parser->known, parser->known_count);
+	if (t.n && analyse(&a, &t, weights_for(parser, v), v, &sure, e))
 		return -1;
 	analysis_apply_rules(&a, &t, parser->without);
 	if (parse_build(p, &a, &t, parser->without, e))

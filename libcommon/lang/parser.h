@@ -1,4 +1,4 @@
-/* Takes sentences apart: by grammar alone, or with what was learnt on the encoder's word vectors. */
+/* Takes sentences apart, by what was learnt on the encoder's word vectors, or on closed-class words alone. */
 #pragma once
 
 #include "lang/analysis.h"
@@ -6,7 +6,7 @@
 struct parser_weights; /* lang/parser_net.h */
 
 struct parser {
-	const struct parser_weights *weights; /* NULL: grammar alone */
+	const struct parser_weights *weights;
 	const char *const *known; /* words spelt right besides the closed ones: a scene's vocabulary */
 	int known_count;
 	unsigned without;    /* rules that do not count (lang/rules.h); 0 */
@@ -22,6 +22,6 @@ struct parser_vectors {
 };
 
 /* No sentence is refused: what the parser cannot place is `unexplained`. -1 only where memory is out. Without
- * vectors, or with vectors of another width or encoder than the weights', the grammar alone speaks. */
+ * vectors, or with vectors of another width or encoder than the weights', their network `grammar` speaks. */
 int parse_sentence(struct parse *p, const struct parser *parser, const char *text,
 	const struct parser_vectors *v, struct err *e);

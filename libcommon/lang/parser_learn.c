@@ -4,9 +4,6 @@
 #include "base/mem.h"
 #include "nn/adam.h"
 
-#include <stdlib.h>
-#include <string.h>
-
 /* The rate is a first guess, not searched. The shares of units dropped are, of few tried values, those that
  * took the most of other writers' marked sentences apart rightly. */
 enum { BATCH = 16 }; /* sentences in a step */
@@ -99,7 +96,7 @@ static double take_batch(const struct parser_weights *w, struct learning *s,
 	}
 	drop(s->batch.keep, (size_t)s->batch.rows * NET_HIDDEN, dropout, r);
 	drop(s->batch.keep_state, (size_t)s->batch.rows * NET_STATE, dropout_state, r);
-	hide(&s->batch, 0.1, r);
+	hide(&s->batch, w->width ? 0.1 : 0, r);
 	parser_forward(w, &s->batch);
 	memset(s->gradient.slab, 0, sizeof(float) * w->count);
 	s->scratch.rows = s->batch.rows;
@@ -154,8 +151,8 @@ static int learn(const struct parser_learning *l, struct parser_weights *w, int 
 
 int parser_learn(const struct parser_learning *l, struct parser_weights *w, struct err *e)
 {
-	struct parser_weights *members[PARSER_MEMBERS];
-	struct err errors[PARSER_MEMBERS] = {{0}};
+	struct parser_weights *members[PARSER_MEMBERS + 1], *const grammar = w->grammar;
+	struct err errors[PARSER_MEMBERS + 1] = {{0}};
 	int n = 0, bad = 0;
 
 	for (struct parser_weights *next; w && n < PARSER_MEMBERS; w = next) {
@@ -163,12 +160,13 @@ int parser_learn(const struct parser_learning *l, struct parser_weights *w, stru
 		w->next = NULL; /* learns alone */
 		members[n++] = w;
 	}
+	members[n] = grammar;
 #pragma omp parallel for schedule(dynamic) reduction(| : bad)
-	for (int k = 0; k < n; k++)
+	for (int k = 0; k < n + (grammar != NULL); k++)
 		bad |= learn(l, members[k], k, &errors[k]) != 0;
 	for (int k = 0; k + 1 < n; k++)
 		members[k]->next = members[k + 1];
-	for (int k = n; k-- > 0;)
+	for (int k = n + 1; k-- > 0;)
 		if (errors[k].message[0])
 			*e = errors[k];
 	return bad ? -1 : 0;

@@ -2,11 +2,8 @@
 
 #include "base/mem.h"
 #include "nn/linear.h"
-#include "nn/loss.h"
 
 #include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 void parser_parts(int width, struct parser_part parts[PARSER_PARTS])
 {
@@ -61,12 +58,19 @@ int parser_weights_make(struct parser_weights *w, int width, struct err *e)
 	return 0;
 }
 
+int parser_weights_add(struct parser_weights **to, int width, struct err *e)
+{
+	*to = mem_zalloc(1, sizeof **to, "parser's weights", e);
+	return *to ? parser_weights_make(*to, width, e) : -1;
+}
+
 void parser_weights_free(struct parser_weights *w)
 {
 	if (w->next)
 		parser_weights_free(w->next);
-	free(w->next);
-	free(w->slab);
+	if (w->grammar)
+		parser_weights_free(w->grammar);
+	mem_free_all(w->next, w->grammar, w->slab);
 	*w = (struct parser_weights){0};
 }
 
@@ -101,26 +105,9 @@ int parser_batch_make(
 
 void parser_batch_free(struct parser_batch *b)
 {
-	free(b->x);
-	free(b->first);
-	free(b->state);
-	free(b->grown);
-	free(b->h);
-	free(b->ahead.gates);
-	free(b->ahead.cell);
-	free(b->ahead.before);
-	free(b->back.gates);
-	free(b->back.cell);
-	free(b->back.before);
-	free(b->scratch);
-	free(b->out);
-	free(b->own);
-	free(b->dependent);
-	free(b->head);
-	free(b->features);
-	free(b->start);
-	free(b->keep);
-	free(b->keep_state);
+	mem_free_all(b->x, b->first, b->state, b->grown, b->h, b->ahead.gates, b->ahead.cell, b->ahead.before,
+		b->back.gates, b->back.cell, b->back.before, b->scratch, b->out, b->own, b->dependent,
+		b->head, b->features, b->start, b->keep, b->keep_state);
 	*b = (struct parser_batch){0};
 }
 

@@ -44,6 +44,8 @@ struct parser_weights {
 	float *distance;		   /* (NET_DISTANCES) */
 	struct parser_weights *next;	   /* another member, learnt from another start: their scores are
 					      averaged; NULL; owned */
+	struct parser_weights *grammar;	   /* of the first: a network of width 0, to which a word is its
+					      closed class and no more; NULL; owned */
 };
 
 /* Names and shapes of the parts, in order; columns 0: a vector. */
@@ -56,6 +58,8 @@ void parser_parts(int width, struct parser_part parts[PARSER_PARTS]);
 
 /* Zeroed. parser_weights_free frees. */
 int parser_weights_make(struct parser_weights *w, int width, struct err *e);
+/* The same as a new one at *to. */
+int parser_weights_add(struct parser_weights **to, int width, struct err *e);
 void parser_weights_free(struct parser_weights *w);
 
 /* What is known of a word besides its vector. */

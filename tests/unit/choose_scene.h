@@ -2,6 +2,7 @@
 #ifndef CHOOSE_SCENE_H
 #define CHOOSE_SCENE_H
 
+#include "tests/unit/default_parser.h"
 #include "ask/choose.h"
 #include "rules_help.h"
 #include "unit.h"
@@ -81,7 +82,12 @@ static inline void make_scene(void)
 		offsets[r + 1] = offsets[r] + (int64_t)encode(pieces[r], words + (size_t)offsets[r] * WIDTH);
 }
 
-static const struct parser parser = {0};
+static struct parser parser;
+
+__attribute__((constructor)) static void make_parser(void)
+{
+	parser = default_parser();
+}
 static const struct choose_scene scene = {&lifted, &splats, &cameras, &parser, 1};
 static float probability[OBJECTS];
 static char chosen[OBJECTS];

@@ -6,15 +6,15 @@
 #include "lang/analysis.h"
 #include "unit.h"
 
-/* An analysis of a text: for each word '.' nothing, T target, A anchor, L also, a attribute, P predicate, E
- * left out, M one that is chosen from; the digit after A, a and P is the word that it hangs on, none for
- * ROOT. All predicates are of the relation.
+/* An analysis of a text: for each word '.' nothing, N name, T target, A anchor, L also, a attribute, P
+ * predicate, E left out, M one that is chosen from; the digit after A, a and P is the word that it hangs on,
+ * none for ROOT. All predicates are of the relation.
  */
 static inline struct analysis made(const struct tokens *t, const char *roles, enum parse_relation relation)
 {
-	static const char letters[] = ".TALaPEM";
+	static const char letters[] = ".TALaPEMN";
 	static const enum word_role role[] = {ROLE_NONE, ROLE_TARGET, ROLE_ANCHOR, ROLE_ALSO, ROLE_ATTRIBUTE,
-		ROLE_PREDICATE, ROLE_EXCEPT, ROLE_MEMBER};
+		ROLE_PREDICATE, ROLE_EXCEPT, ROLE_MEMBER, ROLE_NAME};
 	struct analysis a = {.n = t->n};
 	int i = 0;
 

@@ -1,3 +1,4 @@
+#include "tests/unit/default_parser.h"
 #include "unit.h"
 
 #include "base/rng.h"
@@ -107,7 +108,7 @@ static void takes_anything(void)
 {
 	static char text[20000];
 	struct parser_weights w;
-	struct parser grammar = {0}, learnt = {.weights = &w};
+	struct parser grammar = default_parser(), learnt = {.weights = &w};
 	struct err e = {0};
 	struct rng r;
 	static float vectors[600 * 8];
@@ -147,7 +148,7 @@ static void other_encoder(void)
 	static const char text[] = "the small red mug on the plate";
 	static float vectors[7 * 8];
 	struct parser_weights w;
-	struct parser grammar = {0}, learnt = {.weights = &w};
+	struct parser grammar = default_parser(), learnt = {.weights = &w};
 	const struct parser_vectors v = {"the small red mug on the plate", vectors, 7, 8};
 	struct parse by_grammar, p;
 	struct err e = {0};
@@ -158,6 +159,7 @@ static void other_encoder(void)
 		vectors[i] = (float)rng_normal(&r);
 	CHECK(!parser_weights_make(&w, 8, &e), "%s", e.message);
 	parser_weights_begin(&w, &r);
+	w.grammar = grammar.weights->grammar;
 	CHECK(!parse_sentence(&by_grammar, &grammar, text, &v, &e), "%s", e.message);
 	static const struct {
 		const char *weights, *vectors;
@@ -172,6 +174,7 @@ static void other_encoder(void)
 		parse_free(&p);
 	}
 	parse_free(&by_grammar);
+	w.grammar = NULL;
 	parser_weights_free(&w);
 }
 
@@ -192,7 +195,7 @@ static void indifferent_to_dress(void)
 	static const char *const pairs[][2] = {
 		{"the red cup left of the box", "The  Red   CUP left of the box."},
 		{"the cup that is not on the plate", "THE CUP that is not on the plate!"}};
-	const struct parser parser = {0};
+	const struct parser parser = default_parser();
 	struct err e;
 
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
@@ -232,7 +235,7 @@ static void turned_round(void)
 		{"the wug not on the dax", PARSE_ON, 1},
 		{"the wug with nothing on it", PARSE_SUPPORTS, 1},
 	};
-	const struct parser parser = {0};
+	const struct parser parser = default_parser();
 	struct err e;
 
 	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -251,7 +254,7 @@ static void turned_round(void)
 
 static void counts_and_orders(void)
 {
-	const struct parser parser = {0};
+	const struct parser parser = default_parser();
 	struct parse p;
 	struct err e;
 
@@ -420,7 +423,7 @@ static void purposes_are_told(void)
 	static const char *const no[] = {"the saw", "a saw left of the plank", "where is the saw?",
 		"could you lift it", "what stands by the wall", "I mean the saw", "where did I leave it",
 		"the saw with a plank on it", "the plank is under it", "it has a plank on it", "", "it"};
-	const struct parser parser = {0};
+	const struct parser parser = default_parser();
 	struct parse p = {0};
 	struct err e;
 
@@ -439,7 +442,7 @@ static void content_says_which(void)
 {
 	static const char *const cases[][2] = {
 		{"the jar of tea", "jar"}, {"the cans of soup", "can"}, {"the roof of house", "house"}};
-	const struct parser parser = {0};
+	const struct parser parser = default_parser();
 	struct parse p = {0};
 	struct err e;
 

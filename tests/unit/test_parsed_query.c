@@ -1,5 +1,6 @@
 /* What stands for a sentence in a field that goes by parses: by grammar alone, on vectors that tell which
  * piece they are of. */
+#include "tests/unit/default_parser.h"
 #include "unit.h"
 
 #include "field/query.h"
@@ -9,7 +10,7 @@ enum { PIECES = 16, WIDTH = PIECES, COLUMNS = 2 * WIDTH + QUERY_FLAGS };
 /* Piece k has 1 in column k. */
 static struct query ask(char *text)
 {
-	const struct parser grammar = {0};
+	const struct parser grammar = default_parser();
 	static float words[PIECES * WIDTH];
 	int64_t offsets[2] = {0, 1};
 	struct query q;
@@ -66,7 +67,7 @@ static void landmarks_are_apart(void)
 
 static void denials_and_companions(void)
 {
-	struct query q = ask("the mug with a blue handle");
+	struct query q = ask("the mug with the blue handle");
 
 	HAS_ROW(&q, 0, 1, 1, 0, 0, QUERY_TARGET);
 	HAS_ROW(&q, 1, 4, 1, 0, 0, QUERY_HAS);

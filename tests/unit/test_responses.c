@@ -1,4 +1,5 @@
 /* Answers from lifted objects: what sentences share, outlines of what is hidden. */
+#include "tests/unit/default_parser.h"
 #include "unit.h"
 
 #include "answer/answer.h"
@@ -40,7 +41,12 @@ static const int64_t asked_offsets[] = {0, 1, 2, 3, 3, 4, 4};
 static const float asked_words[] = {0, 1, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
 static char *pieces[] = {"box", "ball", "box", "", "zeppelin", ""};
 static const size_t which[] = {0, 1, 2, 3, 4, 5};
-static const struct parser parser = {0};
+static struct parser parser;
+
+__attribute__((constructor)) static void make_parser(void)
+{
+	parser = default_parser();
+}
 static const struct responses_question of = {&splats, &cameras, asked_offsets, asked_words, NULL, pieces,
 	pieces, NULL, &parser, which, SENTENCES, pieces, "model", 0};
 

@@ -1,4 +1,5 @@
 /* What the rules of lang/rules.def make of analyses that were made wrong here by hand, and of parses. */
+#include "tests/unit/default_parser.h"
 #include "lang/parser.h"
 #include "lang/rules.h"
 #include "rules_help.h"
@@ -69,7 +70,7 @@ static struct parse parsed(const char *text)
 {
 	struct parse p;
 	struct err e;
-	const struct parser grammar = {0};
+	const struct parser grammar = default_parser();
 
 	CHECK(!parse_sentence(&p, &grammar, text, NULL, &e), "%s", e.message);
 	return p;
@@ -96,23 +97,25 @@ static void counted(void)
 	parse_free(&p);
 }
 
-/* The sentence means a second thing, one or all, that has a relation to the first. */
-static void means_two(const char *text, int count, enum parse_relation r, const char *noun)
+/* Words in these roles mean a second thing, one or all, that has a relation to the first. */
+static void means_two(const char *text, const char *roles, int count, enum parse_relation r, const char *noun)
 {
-	const struct parser parser = {0};
-	struct parse p = {0};
+	struct tokens t;
+	struct parse p;
 	struct err e;
 
-	if (!CHECK(!parse_sentence(&p, &parser, text, NULL, &e), "%s", e.message))
+	tokens_take(&t, text, NULL, NULL, 0);
+	const struct analysis a = ruled(text, roles, r);
+	if (!CHECK(!parse_build(&p, &a, &t, 0, &e), "%s", e.message))
 		return;
 	CHECK(p.phrases[0].also.n == (noun != NULL), "'%s': %d things more", text, p.phrases[0].also.n);
 	if (noun && p.phrases[0].also.n) {
 		const struct parse_phrase *f = &p.phrases[p.phrases[0].also.item[0]];
 		const struct parse_clause *c = &p.clauses[f->clauses.item[0]];
-		const struct parse_phrase *a = &p.phrases[c->anchors.item[0]];
+		const struct parse_phrase *by = &p.phrases[c->anchors.item[0]];
 		CHECK(f->count == count && c->relation == r, "'%s': %d, %s", text, f->count,
 			parse_relation_name(c->relation));
-		CHECK(a != &p.phrases[0] && a->noun.n && !strcmp(p.words[a->noun.item[0]].lemma, noun),
+		CHECK(by != &p.phrases[0] && by->noun.n && !strcmp(p.words[by->noun.item[0]].lemma, noun),
 			"'%s': by what", text);
 	}
 	parse_free(&p);
@@ -120,17 +123,21 @@ static void means_two(const char *text, int count, enum parse_relation r, const 
 
 static void second_things(void)
 {
-	means_two("the sled and whatever is on it", PARSE_ALL, PARSE_ON, "sled");
-	means_two("the sled and all the things behind it", PARSE_ALL, PARSE_BEHIND, "sled");
-	means_two("the sled and what it stands on", PARSE_ONE, PARSE_SUPPORTS, "sled");
-	means_two("both sleds and everything under them", PARSE_ALL, PARSE_BELOW, "sled");
-	means_two("the sled and the thing in it", PARSE_ONE, PARSE_INSIDE, "sled");
-	means_two("whatever is on the sled", 0, PARSE_ON, NULL);
-	means_two("the sled and the red jug under it", PARSE_ONE, PARSE_BELOW, "sled");
-	means_two("the sled and also the two jugs to the left of it", 2, PARSE_LEFT, "sled");
-	means_two("the sled, and the jug that is nearest to it", PARSE_ONE, PARSE_NEAR, "sled");
-	means_two("the sled and the jug it stands on", PARSE_ONE, PARSE_SUPPORTS, "sled");
-	means_two("the sled with a jug and a bell on it", 0, PARSE_ON, NULL);
+	means_two("the sled and whatever is on it", ". T . L . P3 A5", PARSE_ALL, PARSE_ON, "sled");
+	means_two("the sled and all the things behind it", ". T . . . L P5 A6", PARSE_ALL, PARSE_BEHIND,
+		"sled");
+	means_two("the sled and what it stands on", ". T . L A6 . P3", PARSE_ONE, PARSE_SUPPORTS, "sled");
+	means_two("both sleds and everything under them", ". T . . P1 A4", PARSE_ALL, PARSE_BELOW, "sled");
+	means_two("the sled and the thing in it", ". T . . L P4 A5", PARSE_ONE, PARSE_INSIDE, "sled");
+	means_two("whatever is on the sled", "T . P0 . A2", 0, PARSE_ON, NULL);
+	means_two("the sled and the red jug under it", ". T . . a5 L P5 A6", PARSE_ONE, PARSE_BELOW, "sled");
+	means_two("the sled and also the two jugs to the left of it", ". T . . . . L . . P6 . A9", 2,
+		PARSE_LEFT, "sled");
+	means_two("the sled, and the jug that is nearest to it", ". T . . L . . P4 . A7", PARSE_ONE,
+		PARSE_NEAR, "sled");
+	means_two(
+		"the sled and the jug it stands on", ". T . . L A7 . P4", PARSE_ONE, PARSE_SUPPORTS, "sled");
+	means_two("the sled with a jug and a bell on it", ". T P . A2 . . A2 P1 A8", 0, PARSE_ON, NULL);
 }
 
 /* A rule that is left out does nothing, and a name that no rule has is told. */

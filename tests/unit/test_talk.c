@@ -1,4 +1,5 @@
 /* How many are meant where people talk (lang/parse_counts.c). */
+#include "tests/unit/default_parser.h"
 #include "lang/parser.h"
 #include "unit.h"
 
@@ -6,7 +7,7 @@
 
 static struct parse parsed(const char *text)
 {
-	const struct parser parser = {0};
+	const struct parser parser = default_parser();
 	struct parse p = {0};
 	struct err e;
 

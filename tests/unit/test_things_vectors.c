@@ -1,5 +1,6 @@
 /* The directions of uses that are a part of the program, and what is chosen by them. A word's vectors are
  * made up here: those of a line of the table itself. */
+#include "tests/unit/default_parser.h"
 #include "ask/choose.h"
 #include "lang/things.h"
 #include "lang/things_vectors.h"
@@ -84,7 +85,8 @@ static int ask(const char *text, const char *thing, const char *of)
 	static const struct cameras cameras = {1, &view};
 	const struct lifted lifted = {N, OBJECTS, names, confidence, indptr, index_of, share, 0, WIDTH, NULL,
 		NULL, NULL, offsets, no_words, NULL, NULL, NULL};
-	const struct parser parser = {.encoder = of};
+	struct parser parser = default_parser();
+	parser.encoder = of;
 	const struct choose_scene scene = {&lifted, &splats, &cameras, &parser, 1};
 	char chosen[OBJECTS];
 	struct err e;
