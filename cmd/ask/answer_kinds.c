@@ -143,34 +143,54 @@ static int list(struct answer_told *t, struct asking_answer *found, struct askin
 	return 0;
 }
 
-/* Whether the first thing, which is there, is what the second question says. */
+/* Whether an object is one of an answer's, and all that the question says holds of it. */
+static int is_of(const struct asking_answer *a, size_t object)
+{
+	size_t k = 0;
+
+	while (k < a->count && a->things[k] != object)
+		k++;
+	return k < a->count && a->holds[object] >= holds;
+}
+
+/* Only what the question surely holds of, if anything: "is anything on the box?" asks that. */
+static void keep_holding(struct asking_answer *a, int is_number)
+{
+	size_t n = 0;
+
+	for (size_t k = 0; k < a->count; k++)
+		if (a->holds[a->things[k]] >= holds || a->is_by_purpose)
+			a->things[n++] = a->things[k];
+	a->count = n || !is_number ? n : a->count;
+}
+
+/* Whether the first things, which are there, are what the second question says; whether any is, of "any", "a
+ * mug" and "one of the mugs". */
 static int answer_whether(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e)
 {
-	SCOPED_BY(asking_answer_free) struct asking_answer first = {0};
+	SCOPED_BY(asking_answer_free) struct asking_answer second = {0};
 
-	if (asking_ask(a, t->asked.text[0], 0, &first, to, e) ||
-		asking_ask(a, t->asked.text[1], 1, found, to, e))
-		return -1;
-	const size_t thing = first.count ? first.things[0] : ASKING_NONE;
-	size_t at = 0;
-	while (at < found->count && found->things[at] != thing)
-		at++;
-	t->is_yes = first.count && at < found->count && found->holds[thing] >= holds;
-	if (!first.count) {
-		memcpy(found->reason, first.reason, sizeof found->reason);
-		found->count = 0;
-		return 0;
+	if (question_is_any(t->asked.text[0])) {
+		t->asked.kind = QUESTION_THERE;
+		return asking_ask(a, t->asked.text[1], 1, found, to, e);
 	}
-	if (t->is_yes)
-		*found->reason = 0;
-	else if (found->count)
-		snprintf(found->reason, sizeof found->reason, "that is %.200s",
-			a->model.lifted.names[found->things[0]]);
-	const struct asking_answer second = *found;
-	*found = first;
-	memcpy(found->reason, second.reason, sizeof found->reason);
-	first = second;
+	if (asking_ask(a, t->asked.text[0], 0, found, to, e) ||
+		asking_ask(a, t->asked.text[1], 1, &second, to, e))
+		return -1;
+	if (!found->count)
+		return 0;
+	size_t k = 0;
+	while (k < found->count && is_of(&second, found->things[k]))
+		k++;
+	t->is_yes = k == found->count;
+	*found->reason = 0;
+	if (!t->is_yes && found->count == 1 && !second.count)
+		memcpy(found->reason, second.reason, sizeof found->reason);
+	else if (!t->is_yes && (found->count > 1 || second.count))
+		snprintf(found->reason, sizeof found->reason,
+			found->count > 1 ? "not %.200s" : "that is %.200s",
+			a->model.lifted.names[found->count > 1 ? found->things[k] : second.things[0]]);
 	return 0;
 }
 
@@ -205,7 +225,8 @@ static int answer_set(struct answer_told *t, struct asking_answer *found, struct
 		snprintf(found->reason, sizeof found->reason, "nothing here is known as what it names");
 		found->count = 0;
 	}
-	if (found->count != 1 || found->probability[found->things[0]] >= (is_side ? sure : sure_alone))
+	if (found->count != 1 || found->is_anchor_unknown ||
+		found->probability[found->things[0]] >= (is_side ? sure : sure_alone))
 		return 0;
 	return answer_all(t->asked.text[0], found, a, to, e);
 }
@@ -214,10 +235,10 @@ static int answer_set(struct answer_told *t, struct asking_answer *found, struct
 static int answer_one(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e)
 {
-	const int is_number = t->asked.kind == QUESTION_NUMBER,
+	const int is_all = t->asked.kind == QUESTION_NUMBER || t->asked.kind == QUESTION_THERE,
 		  is_what = t->asked.kind == QUESTION_WHICH && question_is_open(t->understood);
 
-	if (asking_ask(a, t->asked.text[0], is_number, found, to, e))
+	if (asking_ask(a, t->asked.text[0], is_all, found, to, e))
 		return -1;
 	return found->is_by_purpose && is_what ? answer_all(t->asked.text[0], found, a, to, e) : 0;
 }
@@ -284,8 +305,9 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 
 	if (find_things(t, found, a, to, e))
 		return -1;
-	if (kind == QUESTION_THERE)
-		t->is_yes = found->count > 0;
+	if (t->asked.kind == QUESTION_THERE || kind == QUESTION_NUMBER)
+		keep_holding(found, kind == QUESTION_NUMBER);
+	t->is_yes |= t->asked.kind == QUESTION_THERE && found->count && (int)found->count >= t->asked.least;
 	if (kind == QUESTION_NUMBER)
 		say_number(t, found->count);
 	if (kind >= QUESTION_HEIGHT && kind <= QUESTION_SIZE)

@@ -43,10 +43,10 @@ static double weigh_colours(const struct answer_told *t, size_t thing, double wo
 }
 
 /* "black and grey": the colours that count, of words for one colour only the likeliest. */
-static void say_colours(const struct answer_told *t, struct parse_words *to)
+static void say_colours(const struct answer_told *t, size_t thing, struct parse_words *to)
 {
 	double worth[COLOUR_WORDS];
-	const double most = weigh_colours(t, t->answer->things[0], worth);
+	const double most = weigh_colours(t, thing, worth);
 
 	for (int said = 0; said < COLOUR_WORDS; said++) {
 		int best = 0;
@@ -62,10 +62,9 @@ static void say_colours(const struct answer_told *t, struct parse_words *to)
 }
 
 /* What else sentences say of a thing. */
-static void say_looks(const struct answer_told *t, struct parse_words *to)
+static void say_looks(const struct answer_told *t, size_t thing, struct parse_words *to)
 {
 	const struct vocabulary *v = t->answer->words;
-	const size_t thing = t->answer->things[0];
 
 	for (size_t i = 0; i < v->n; i++)
 		if (v->items[i].object == thing && v->items[i].role == VOCABULARY_ATTRIBUTE &&
@@ -77,10 +76,16 @@ static void say_looks(const struct answer_told *t, struct parse_words *to)
 
 void answer_looks(const struct answer_told *t, int is_colour, char *to, size_t room)
 {
+	char own[CALLING_TEXT];
 	struct parse_words words = {to, 0, room};
 
 	*to = 0;
-	(is_colour ? say_colours : say_looks)(t, &words);
-	if (!*to)
-		parse_words_add(&words, "not known");
+	for (size_t k = 0; k < t->answer->count; k++) {
+		struct parse_words w = {own, *own = 0, sizeof own};
+		(is_colour ? say_colours : say_looks)(t, t->answer->things[k], &w);
+		if (*own && strstr(to, own))
+			continue;
+		parse_words_add(&words, *to ? ", " : "");
+		parse_words_add(&words, *own ? own : "not known");
+	}
 }

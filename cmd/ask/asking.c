@@ -140,12 +140,12 @@ struct watched {
 	int is_out_of_memory;
 };
 
-/* The least of the target's parts for each object. */
+/* The least of the target's parts for each object; of "the red mugs and the bowl" nothing is told. */
 static void find_holds(const struct meaning *m, double *holds)
 {
 	for (size_t o = 0; o < m->arrangement->n; o++) {
 		holds[o] = 1;
-		for (size_t k = 0; k < m->part_count; k++)
+		for (size_t k = 0; k < m->part_count && !m->sentence->parse->phrases[0].also.n; k++)
 			if (!m->parts[k].phrase && m->parts[k].kind != MEANING_NOUN &&
 				m->parts[k].value[o] < holds[o])
 				holds[o] = m->parts[k].value[o];

@@ -33,6 +33,8 @@ static void add_part(struct parse_words *w, const struct explained *x, const str
 		parse_words_phrase(w, p, text, part->index);
 		break;
 	case MEANING_AMONG:
+		if (!p->phrases[part->phrase].among.n)
+			parse_words_add(w, "of those");
 		for (int k = 0; k < p->phrases[part->phrase].among.n; k++) {
 			parse_words_add(w, k ? " or " : "");
 			parse_words_phrase(w, p, text, p->phrases[part->phrase].among.item[k]);

@@ -36,12 +36,16 @@ static int is_of_nothing(const struct question_asked *q)
 static int answer(struct answer_told *t, struct asking_answer *found, struct asking *a, struct talk *talk,
 	const struct report *to, struct err *e)
 {
-	talk_understand(talk, a->model.lifted.names, a->model.lifted.objects, t->question, t->understood);
+	const struct meaning_set *of = talk_understand(
+		talk, a->model.lifted.names, a->model.lifted.objects, t->question, t->understood);
+	chooser_within(a->chooser, of);
 	question_read(&t->asked, t->understood, 0);
-	if (is_of_nothing(&t->asked) ? refuse(found, a, e) : kinds_answer(t, found, a, to, e))
+	const int bad = is_of_nothing(&t->asked) ? refuse(found, a, e) : kinds_answer(t, found, a, to, e);
+	chooser_within(a->chooser, NULL);
+	if (bad)
 		return -1;
 	if (talk)
-		talk_take(talk, t);
+		talk_take(talk, t, of != NULL);
 	return 0;
 }
 

@@ -52,7 +52,10 @@ struct distance {
 struct talk {
 	size_t thing, other;	      /* the thing that was answered, and "the other one"; ASKING_NONE */
 	int is_unsure;		      /* it was asked which of the two is meant */
-	char things[CALLING_TEXT];    /* "the mug and the cup": those of an answer of a few; "": it was one */
+	char things[CALLING_TEXT];    /* "the mug and the cup": the two that were spoken of; "": it was one */
+	struct meaning_set set;	      /* "them": the last answer of several */
+	int is_several;		      /* it was the last one */
+	struct meaning_set of;	      /* which the last questions were about some of: "the red one" */
 	char question[QUESTION_TEXT]; /* that was asked last, as it was understood; "": none */
 };
 #define TALK_NEW                                                                                             \
@@ -83,19 +86,20 @@ struct answer_told {
 int kinds_answer(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e);
 
-/* What the first thing of an answer looks like, in words: "black and grey", "steel, shiny", "not known". Cut
+/* What the things of an answer look like, in words: "black and grey", "steel, shiny", "not known". Cut
  * to fit. */
 void answer_looks(const struct answer_told *t, int is_colour, char *to, size_t room);
 
-/* A question with the things that its words point back to put in their place. names (objects). */
-void talk_understand(const struct talk *talk, char *const *names, size_t objects, const char *question,
-	char understood[QUESTION_TEXT]);
+/* A question with the things that its words point back to put in their place. names (objects). Returns the
+ * things one of which is meant by their noun in it, or NULL. */
+const struct meaning_set *talk_understand(const struct talk *talk, char *const *names, size_t objects,
+	const char *question, char understood[QUESTION_TEXT]);
 
 /* Whether words of a text point back to what has to be known from before. */
 int talk_points(const char *text);
 
-/* What is spoken of after an answer. */
-void talk_take(struct talk *talk, const struct answer_told *t);
+/* What is spoken of after an answer, which with is_within was of some of those before. */
+void talk_take(struct talk *talk, const struct answer_told *t, int is_within);
 
 /* A line for each thing, or for a distance, or one that says why there is none; after the explanation, where
  * there is one. */

@@ -8,8 +8,6 @@
 
 #include <string.h>
 
-enum { FEW = 4 /* things that "they" may be */ };
-
 /* Whether a thing is named in the question before word i, which then points to that: "the plate with nothing
  * on it", but not "is the plate larger than it?". Its words are *of, up to a pause, where there is one
  * between. */
@@ -83,8 +81,7 @@ struct pointed {
 
 /* What words of a question may point to; "" where there is no such thing. */
 struct referents {
-	char name[CALLING_TEXT], other[CALLING_TEXT];
-	const char *things;
+	char name[CALLING_TEXT], other[CALLING_TEXT], things[CALLING_TEXT];
 	char noun[CALLING_TEXT], kind[CALLING_TEXT]; /* of "the left one", and of "the red one" */
 };
 
@@ -135,6 +132,13 @@ static int is_tag(const struct tokens *t, int i)
 	return i + 1 == t->n && k < i && t->word[k].before;
 }
 
+static const char *plural_end(const char *noun)
+{
+	const size_t n = strlen(noun);
+
+	return n && strchr("sxh", noun[n - 1]) ? "es" : "s";
+}
+
 /* topic is where a thing is written that the question begins with: "the mug, how tall is it?" */
 static struct pointed points_to(const struct tokens *t, int i, const struct referents *r,
 	char topic[CALLING_TEXT], const char *question)
@@ -148,8 +152,9 @@ static struct pointed points_to(const struct tokens *t, int i, const struct refe
 	/* behind a noun, as of "everything that is red", a clause begins */
 	const int may_stand = before == CLOSED_CONJUNCTION || before == CLOSED_BE ||
 			      before == CLOSED_PREPOSITION || before == CLOSED_PLACE;
-	const int is_end =
-		i + 1 == t->n || (may_stand && (class == CLOSED_BE || class == CLOSED_CONJUNCTION));
+	const int is_end = i + 1 == t->n || tokens_is(t, i - 1, "of") ||
+			   (may_stand && (class == CLOSED_BE || class == CLOSED_CONJUNCTION)) ||
+			   (before == CLOSED_BE && (class == CLOSED_PREPOSITION || class == CLOSED_PLACE));
 
 	if (other_length(t, i) && *r->other)
 		return point("the ", r->other, "", i + other_length(t, i));
@@ -170,17 +175,23 @@ static struct pointed points_to(const struct tokens *t, int i, const struct refe
 	if (*r->things && tokens_is(t, i, those) &&
 		(is_end || class == CLOSED_NUMBER || tokens_is(t, i, "they")))
 		return point("", r->things, "", i + 1 + (class == CLOSED_NUMBER));
-	const char *noun = i && tokens_is(t, i, "one") ? (says_look(t, i) ? r->kind : r->noun) : "";
-	return (struct pointed){.article = "", .to = *noun ? noun : NULL, .tail = "", .end = i + 1};
+	const int is_noun = i && tokens_is(t, i, "one|ones") && !tokens_is(t, i + 1, "of");
+	const char *noun = !is_noun ? "" : says_look(t, i) ? r->kind : r->noun;
+	return (struct pointed){
+		"", *noun ? noun : NULL, tokens_is(t, i, "ones") ? plural_end(noun) : "", i + 1};
 }
 
-/* The question with what its words point back to in their place. */
-static void put_pointed(const struct referents *r, const char *question, char understood[QUESTION_TEXT])
+/* What words pointed to, as bits. */
+enum { TO_THINGS = 1, TO_NOUN = 2 };
+
+/* The question with what its words point back to in their place. Returns what they point to. */
+static unsigned put_pointed(const struct referents *r, const char *question, char understood[QUESTION_TEXT])
 {
 	char topic[CALLING_TEXT];
 	struct question_asked q;
 	struct tokens t;
 	size_t n = 0;
+	unsigned to = 0;
 	int from = 0;
 
 	*understood = 0;
@@ -191,17 +202,46 @@ static void put_pointed(const struct referents *r, const char *question, char un
 		end = p.end;
 		if (!p.to || !*p.to || (p.to == topic && q.kind == QUESTION_WHICH))
 			continue;
+		to |= p.to == r->things ? TO_THINGS : p.to == r->noun || p.to == r->kind ? TO_NOUN : 0;
 		n += (size_t)snprintf(understood + n, QUESTION_TEXT - n, "%.*s%s%s%s",
 			t.word[i].span.begin - from, question + from, p.article, p.to, p.tail);
 		from = t.word[end - 1].span.end;
 	}
 	if (n < QUESTION_TEXT)
 		snprintf(understood + n, QUESTION_TEXT - n, "%s", question + from);
+	return to;
+}
+
+/* What "one" is one of. */
+static const struct meaning_set *of_one(const struct talk *talk)
+{
+	return talk->is_several ? &talk->set : &talk->of;
+}
+
+/* The same, where words may point to some of the things that were spoken of, and "those" are a set; returns
+ * which. */
+static const struct meaning_set *put_set(const struct talk *talk, const struct meaning_set *those,
+	struct referents *r, const char *question, char understood[QUESTION_TEXT])
+{
+	static const unsigned of_two = 1U << QUESTION_DISTANCE | 1U << QUESTION_COMPARE |
+				       1U << QUESTION_MORE | 1U << QUESTION_EITHER;
+	const char *noun = *those->noun ? those->noun : "thing";
+	struct question_asked q;
+
+	unsigned to = put_pointed(r, question, understood);
+	question_read(&q, understood, 0);
+	if (those->n && (!*r->things || !(of_two >> q.kind & 1))) {
+		snprintf(r->things, sizeof r->things, "the %s%s", noun, plural_end(noun));
+		to = put_pointed(r, question, understood);
+		if (to & TO_THINGS)
+			return those;
+	}
+	return of_one(talk)->n && to & TO_NOUN ? of_one(talk) : NULL;
 }
 
 int talk_points(const char *question)
 {
-	const struct referents nothing = {.things = ""};
+	const struct referents nothing = {0};
 	char topic[CALLING_TEXT];
 	struct tokens t;
 
@@ -231,9 +271,10 @@ static int is_other(const struct tokens *t)
 	return is ? i : 0;
 }
 
-/* Where the thing begins of "and the kettle?", "what about the kettle?", or of a reply to what was asked
- * back; -1: it is none of these. */
-static int find_again(const struct talk *talk, const struct tokens *t, const char *question)
+/* Where the thing begins of "and the kettle?", "what about the kettle?", "and from the kettle?", or of a
+ * reply to what was asked back; -1: it is none of these. */
+static int find_again(const struct talk *talk, const struct question_asked *last, const struct tokens *t,
+	const char *question)
 {
 	static const unsigned begins = 1U << CLOSED_DETERMINER | 1U << CLOSED_ATTRIBUTE | 1U << CLOSED_SIZE |
 				       1U << CLOSED_PLACE | 1U << CLOSED_GENERIC;
@@ -243,38 +284,87 @@ static int find_again(const struct talk *talk, const struct tokens *t, const cha
 	struct question_asked q;
 
 	question_read(&q, question, 0);
-	const int may_begin = class < 0 || (begins >> class & 1);
+	const int may_begin = class < 0 || (begins >> class & 1) ||
+			      (last->kind == QUESTION_DISTANCE && tokens_is(t, from, "from|to"));
 	return q.kind == QUESTION_WHICH && may_begin && (about || is_and || talk->is_unsure) ? from : -1;
 }
 
-/* The last question of the thing that this one names. *noun becomes that of the thing that it was about. */
-static void ask_again(
-	const struct talk *talk, const char *thing, char understood[QUESTION_TEXT], char noun[TOKEN_LENGTH])
+/* "How far is it from the mug?" of the thing that is not the one it is from. */
+static void ask_distance(const struct question_asked *last, const char *question, const char *thing,
+	char understood[QUESTION_TEXT])
 {
-	struct question_asked last;
-	struct tokens t;
-	int begin;
+	const char *at = strstr(question, last->text[0]);
+	const int is_from =
+		at && at - question > 5 && (!strncmp(at - 5, "from ", 5) || !strncmp(at - 3, "to ", 3));
 
-	*noun = 0;
-	question_read(&last, talk->question, 0);
-	begin = last.about.begin;
-	snprintf(understood, QUESTION_TEXT, "%s", thing);
-	if (last.kind == QUESTION_WHICH || last.about.end <= begin)
-		return;
-	char *const about = understood; /* for a while */
-	snprintf(about, QUESTION_TEXT, "%.*s", last.about.end - begin, talk->question + begin);
-	question_noun(about, noun);
-	/* "left of the mug" becomes "left of the kettle", but "on the mug" becomes "under the kettle" */
+	snprintf(understood, QUESTION_TEXT, "how far is %.400s %.400s", last->text[is_from], thing);
+}
+
+/* The last question of the thing that this one names. */
+static void ask_again(const struct question_asked *last, const char *question, const char *thing,
+	char understood[QUESTION_TEXT])
+{
+	struct tokens t;
+	char about[QUESTION_TEXT];
+	int begin = last->about.begin;
+
 	tokens_take(&t, thing, NULL, NULL, 0);
+	snprintf(understood, QUESTION_TEXT, "%s", thing);
+	if (last->kind == QUESTION_DISTANCE && *last->text[1] && tokens_is(&t, 0, "from|to")) {
+		ask_distance(last, question, thing, understood);
+		return;
+	}
+	if (last->kind == QUESTION_WHICH || last->about.end <= begin)
+		return;
+	/* "left of the mug" becomes "left of the kettle", but "on the mug" becomes "under the kettle" */
 	const int is_place = t.n && tokens_class(&t, 0) == CLOSED_PLACE;
+	snprintf(about, sizeof about, "%.*s", last->about.end - begin, question + begin);
 	tokens_take(&t, about, NULL, NULL, 0);
 	for (int i = 0; i < t.n && !is_place && tokens_class(&t, 0) == CLOSED_PLACE; i++)
 		if (tokens_class(&t, i) == CLOSED_DETERMINER) {
 			begin += t.word[i].span.begin;
 			break;
 		}
-	snprintf(understood, QUESTION_TEXT, "%.*s%s%s", begin, talk->question, thing,
-		talk->question + last.about.end);
+	snprintf(understood, QUESTION_TEXT, "%.*s%.400s%.400s", begin, question, thing,
+		question + last->about.end);
+}
+
+/* "Which is bigger?", "how many are red?" and "the smallest", of several that were spoken of: of those.
+ * Returns whether it is so; to gets the text up to its pause. */
+static int add_those(const struct talk *talk, int is_part, const char *question, char to[QUESTION_TEXT])
+{
+	char noun[TOKEN_LENGTH];
+	struct tokens t;
+
+	tokens_take(&t, question, NULL, NULL, 0);
+	int i = tokens_is(&t, 0, "and"), is = talk->of.n && t.n;
+	for (int k = 0; k < t.n; k++)
+		is &= tokens_class(&t, k) != CLOSED_GENERIC && tokens_class(&t, k) != CLOSED_PRONOUN;
+	question_noun(question, noun);
+	if (is_part)
+		is &= !*noun && tokens_class(&t, 0) == CLOSED_DETERMINER;
+	i = is_part ? t.n : tokens_is(&t, i, "which") ? i + 1 : tokens_is(&t, i + 1, "many") ? i + 2 : 0;
+	is &= i && (i == t.n || tokens_class(&t, i) == CLOSED_BE);
+	const int end = i && i <= t.n ? t.word[i - 1].span.end : 0;
+	snprintf(to, QUESTION_TEXT, "%.*s%s%.*s", end, question, is ? " of those" : "",
+		is_part ? 0 : QUESTION_TEXT - 64 - end, question + end);
+	return is;
+}
+
+/* The same of another thing: "and the kettle?", "the other one". */
+static const struct meaning_set *understand_part(const struct talk *talk, const struct question_asked *last,
+	struct referents *r, const char *part, char understood[QUESTION_TEXT])
+{
+	char of_those[QUESTION_TEXT], thing[QUESTION_TEXT];
+	const int is = add_those(talk, 1, part, of_those);
+	const struct meaning_set *set = put_set(talk, is ? &talk->of : &talk->set, r, of_those, thing);
+
+	/* "what is on the tray? and the thing behind it?" is not what is on that */
+	if (last->kind == QUESTION_SET && talk_points(part))
+		snprintf(understood, QUESTION_TEXT, "%s", thing);
+	else
+		ask_again(last, talk->question, thing, understood);
+	return set;
 }
 
 /* What to call a thing that has its number: "mug 1" beside "mug 2". */
@@ -289,53 +379,77 @@ static void find_name(char *const *names, size_t objects, size_t thing, char nam
 	snprintf(name, CALLING_TEXT, "%s%s", n ? names[thing] : "", has_other ? " 1" : "");
 }
 
-void talk_understand(const struct talk *talk, char *const *names, size_t objects, const char *question,
-	char understood[QUESTION_TEXT])
+/* What words may point to. */
+static void find_referents(const struct talk *talk, char *const *names, size_t objects,
+	const struct question_asked *last, struct referents *r)
 {
-	static const char the_other[] = "the other one";
-	struct referents r = {.things = talk ? talk->things : ""};
-	char again[QUESTION_TEXT], noun[TOKEN_LENGTH] = "";
+	char about[QUESTION_TEXT], noun[TOKEN_LENGTH], other[CALLING_TEXT];
+	int n = 0;
+
+	snprintf(r->things, sizeof r->things, "%s", talk->things);
+	find_name(names, objects, talk->thing, r->name);
+	find_name(names, objects, talk->other, r->other);
+	find_shared(names, objects, talk->thing, r->noun);
+	find_words(names[talk->thing], 1, r->kind);
+	snprintf(about, sizeof about, "%.*s", last->about.end - last->about.begin,
+		talk->question + last->about.begin);
+	question_noun(about, noun);
+	const struct meaning_set *of = of_one(talk);
+	if (of->n)
+		snprintf(noun, sizeof noun, "%s", *of->noun ? of->noun : "thing");
+	for (size_t o = 0; o < objects && *noun; o++) {
+		find_words(names[o], 1, other);
+		n += !strcmp(other, noun);
+	}
+	if (*noun)
+		snprintf(r->kind, sizeof r->kind, "%s", noun);
+	if (n > 1 || of->n)
+		snprintf(r->noun, sizeof r->noun, "%s", noun);
+}
+
+const struct meaning_set *talk_understand(const struct talk *talk, char *const *names, size_t objects,
+	const char *question, char understood[QUESTION_TEXT])
+{
+	struct referents r = {0};
+	struct question_asked last;
+	char of_those[QUESTION_TEXT];
 	struct tokens t;
 
 	tokens_take(&t, question, NULL, NULL, 0);
 	if (!talk || !*talk->question || talk->thing == ASKING_NONE) {
 		put_pointed(&r, question, understood);
-		return;
+		return NULL;
 	}
-	find_name(names, objects, talk->thing, r.name);
-	find_name(names, objects, talk->other, r.other);
-	find_shared(names, objects, talk->thing, r.noun);
-	find_words(names[talk->thing], 1, r.kind);
-	const int other = is_other(&t), thing = find_again(talk, &t, question);
-	snprintf(again, sizeof again, "%s", question);
-	if (other == t.n) {
-		ask_again(talk, the_other, again, noun);
-	} else if (other) {
-		if (*r.other)
-			memcpy(r.name, r.other, sizeof r.name);
-		snprintf(again, sizeof again, "%s", question + t.word[other].span.begin);
-	} else if (thing >= 0) {
-		ask_again(talk, question + t.word[thing].span.begin, again, noun);
-	}
-	if (*noun) {
-		snprintf(r.noun, sizeof r.noun, "%s", noun);
-		snprintf(r.kind, sizeof r.kind, "%s", noun);
-	}
-	put_pointed(&r, again, understood);
+	question_read(&last, talk->question, 0);
+	find_referents(talk, names, objects, &last, &r);
+	const int other = is_other(&t), thing = find_again(talk, &last, &t, question);
+	if (other == t.n || thing >= 0)
+		return understand_part(talk, &last, &r,
+			other == t.n ? "the other one" : question + t.word[thing].span.begin, understood);
+	if (other && *r.other)
+		memcpy(r.name, r.other, sizeof r.name);
+	const int is = add_those(talk, 0, question + (other ? t.word[other].span.begin : 0), of_those);
+	return put_set(talk, is ? &talk->of : &talk->set, &r, of_those, understood);
 }
 
 /* The one thing of a kind besides it, or else the likeliest other one. */
-static size_t find_other(const struct answer_told *t, size_t thing)
+static size_t find_other(const struct talk *talk, const struct answer_told *t, size_t thing)
 {
+	const size_t objects = t->asking->model.lifted.objects;
 	char *const *names = t->asking->model.lifted.names;
 	char own[CALLING_TEXT], words[CALLING_TEXT];
 	size_t other = ASKING_NONE;
 	int n = 0;
 
+	for (size_t o = 0; o < objects && talk->of.n; o++)
+		if (o < MEANING_SET && talk->of.is[o] && o != thing) {
+			other = o;
+			n++;
+		}
 	for (int is_noun = 0; is_noun < 2 && n != 1; is_noun++) {
 		find_words(names[thing], is_noun, own);
 		n = 0;
-		for (size_t o = 0; o < t->asking->model.lifted.objects; o++) {
+		for (size_t o = 0; o < objects; o++) {
 			find_words(names[o], is_noun, words);
 			if (o == thing || strcmp(own, words) != 0)
 				continue;
@@ -346,8 +460,42 @@ static size_t find_other(const struct answer_told *t, size_t thing)
 	return n == 1 ? other : t->answer->runner_up;
 }
 
-/* "the mug and the cup": of an answer of a few, and of a question about two. */
-static void take_things(struct talk *talk, const struct answer_told *t)
+/* The noun that all of a set's names end in, or else the one that the question asked for. */
+static void find_noun(struct meaning_set *set, const struct answer_told *t)
+{
+	const struct asking_answer *a = t->answer;
+	const struct parse_span about = t->asked.about;
+	char *const *names = t->asking->model.lifted.names, noun[CALLING_TEXT], other[CALLING_TEXT];
+
+	find_words(names[a->things[0]], 1, noun);
+	for (size_t k = 1; k < a->count && *noun; k++) {
+		find_words(names[a->things[k]], 1, other);
+		*noun = strcmp(noun, other) ? 0 : *noun;
+	}
+	snprintf(set->noun, sizeof set->noun, "%s", noun);
+	snprintf(other, sizeof other, "%.*s", about.end - about.begin, t->understood + about.begin);
+	if (!*noun)
+		question_noun(other, set->noun);
+}
+
+static void take_set(struct talk *talk, const struct answer_told *t, int is_within)
+{
+	const struct asking_answer *a = t->answer;
+
+	talk->is_several = a->count > 1;
+	if (a->count > 1) {
+		talk->set = (struct meaning_set){.n = a->count};
+		for (size_t k = 0; k < a->count; k++)
+			if (a->things[k] < MEANING_SET)
+				talk->set.is[a->things[k]] = 1;
+		find_noun(&talk->set, t);
+	}
+	if (!is_within)
+		talk->of = a->count > 1 ? talk->set : (struct meaning_set){0};
+}
+
+/* "the mug and the cup": of an answer of two, and of a question about two. */
+static void take_things(struct talk *talk, const struct answer_told *t, int is_within)
 {
 	const struct asking_answer *a = t->answer;
 	const int kind = t->asked.kind;
@@ -362,14 +510,18 @@ static void take_things(struct talk *talk, const struct answer_told *t)
 		if (at && length + strlen(at) + 8 < sizeof talk->things)
 			snprintf(talk->things, CALLING_TEXT, "%.100s and %.100s", t->asked.text[0],
 				at + (*at == ' '));
+		if (!is_within)
+			talk->set = talk->of = (struct meaning_set){0};
 		return;
 	}
-	for (size_t k = 0, n = 0; k < a->count && a->count > 1 && a->count <= FEW && n < CALLING_TEXT; k++)
-		n += (size_t)snprintf(talk->things + n, CALLING_TEXT - n, "%sthe %s", k ? " and " : "",
-			t->asking->model.lifted.names[a->things[k]]);
+	char *const *names = t->asking->model.lifted.names;
+	if (a->count == 2)
+		snprintf(talk->things, CALLING_TEXT, "the %.100s and the %.100s", names[a->things[0]],
+			names[a->things[1]]);
+	take_set(talk, t, is_within);
 }
 
-void talk_take(struct talk *talk, const struct answer_told *t)
+void talk_take(struct talk *talk, const struct answer_told *t, int is_within)
 {
 	const struct asking_answer *a = t->answer;
 
@@ -381,10 +533,10 @@ void talk_take(struct talk *talk, const struct answer_told *t)
 	talk->is_unsure = t->is_unsure;
 	talk->other = a->count == 2	   ? a->things[1]
 		      : t->is_unsure	   ? a->runner_up
-		      : !was_unsure	   ? find_other(t, thing)
+		      : !was_unsure	   ? find_other(talk, t, thing)
 		      : thing == before[0] ? before[1]
 		      : thing == before[1] ? before[0]
-					   : find_other(t, thing);
-	take_things(talk, t);
+					   : find_other(talk, t, thing);
+	take_things(talk, t, is_within || (*talk->things && strstr(t->understood, talk->things)));
 	memcpy(talk->question, t->understood, sizeof talk->question);
 }

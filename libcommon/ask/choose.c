@@ -342,6 +342,11 @@ struct chooser *chooser_make(const struct choose_scene *s, unsigned parts, struc
 	return NULL;
 }
 
+void chooser_within(struct chooser *c, const struct meaning_set *set)
+{
+	c->meaning.set = set;
+}
+
 void chooser_swap(struct chooser *c, size_t i, size_t k)
 {
 	arrangement_swap(&c->arrangement, i, k);

@@ -84,6 +84,9 @@ struct chooser;
 struct chooser *chooser_make(const struct choose_scene *s, unsigned parts, struct err *e);
 void chooser_free(struct chooser *c);
 
+/* From now on what a phrase calls by the set's noun is one of the set; NULL: of all that is there. */
+void chooser_within(struct chooser *c, const struct meaning_set *set);
+
 /* Two objects change places: all that is seen of them, not what they are called. */
 void chooser_swap(struct chooser *c, size_t i, size_t k);
 

@@ -42,6 +42,24 @@ static void judge_except(struct meaning *m, int phrase, int except)
 	meaning_take_part(m);
 }
 
+/* And that it is one of those that were spoken of: the target, or whatever is called by their noun. */
+static void judge_within(struct meaning *m, int phrase)
+{
+	const struct parse *p = m->sentence->parse;
+	const int head = meaning_head_of(p, &p->phrases[phrase]);
+	const size_t n = objects_of(m);
+
+	if (!m->set || (*m->set->noun ? head < 0 || strcmp(p->words[head].lemma, m->set->noun) != 0 : phrase))
+		return;
+	double *value = meaning_add_part(m, phrase, MEANING_AMONG, -1), *there = there_of(m, phrase);
+	for (size_t o = 0; o < n; o++) {
+		const int is = o < MEANING_SET && m->set->is[o];
+		value[o] = is ? 1 : GROUP_ELSE;
+		there[o] *= is;
+	}
+	meaning_take_part(m);
+}
+
 /* And that it is one of several that are named: "of the jar, the tin and the box the tallest". */
 static void judge_among(struct meaning *m, int phrase)
 {
@@ -120,6 +138,7 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 	judge_noun(m, phrase);
 	if (f->viewer || depth > DEPTH)
 		return;
+	judge_within(m, phrase);
 	judge_below(m, f, depth);
 	for (int k = 0; k + 1 < f->noun.n; k++)
 		judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);

@@ -332,12 +332,10 @@ static void judge_ordinal(struct meaning *m, int phrase, const double *fit)
 	meaning_take_part(m);
 }
 
-/* "around", and nothing is there that it is around; "in" of "what you boil water in". */
+/* "around", and nothing is there that it is around. */
 static int says_nothing(const struct parse_clause *c)
 {
-	const int may_be = c->relation == PARSE_NEAR || c->relation == PARSE_SUPPORTS;
-
-	return may_be && c->degree == PARSE_PLAIN && !c->anchors.n && !c->negated;
+	return c->relation == PARSE_NEAR && c->degree == PARSE_PLAIN && !c->anchors.n && !c->negated;
 }
 
 /* The clauses of a turn. fit: what is compared. */

@@ -8,7 +8,7 @@
 /* The colour that a colour goes on with, as "black and white" and "salmon pink" do, or -1. */
 static int colour_after(const struct parse *p, int word)
 {
-	const int next = parse_word_is(p, word + 1, "and") ? word + 2 : word + 1;
+	const int next = parse_word_is(p, word + 1, "and|or") ? word + 2 : word + 1;
 
 	return next < p->word_count && colour_word(p->words[next].lemma) >= 0 ? next : -1;
 }

@@ -26,8 +26,17 @@ struct meaning_part {
 	double *value;
 };
 
+/* What "those" are, which a conversation has spoken of: objects, and the noun that phrases call them by. */
+enum { MEANING_SET = 1024 /* objects, of which one of them may be in it */ };
+struct meaning_set {
+	char noun[TOKEN_LENGTH]; /* its lemma; "": things */
+	size_t n;		 /* how many they are; 0: none were spoken of */
+	unsigned char is[MEANING_SET];
+};
+
 struct meaning {
 	const struct arrangement *arrangement;
+	const struct meaning_set *set; /* "of those"; NULL: of all that is there */
 	struct vocabulary *vocabulary;
 	unsigned without; /* a bit 1 << meaning_kind for each kind of part that counts for nothing */
 	int has_surfaces; /* whether what Gaussians show of a look counts */

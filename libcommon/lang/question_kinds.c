@@ -47,6 +47,8 @@ static int is_choice(const struct tokens *t, int at, const char *choice, size_t 
 
 	if (length == 1 && *choice == '$')
 		return class == CLOSED_SIZE || class == CLOSED_PLACE;
+	if (length == 1 && *choice == '#')
+		return class == CLOSED_NUMBER || tokens_is(t, at, "one");
 	if (length == 1 && *choice == '%')
 		return class == CLOSED_ATTRIBUTE || colour_word(t->word[at].text) >= 0;
 	if (*choice == '=')
@@ -97,7 +99,7 @@ static int are_idle(const struct tokens *t, int begin, int end)
 	static const unsigned idle =
 		1U << CLOSED_PRONOUN | 1U << CLOSED_AUXILIARY | 1U << CLOSED_REQUEST | 1U << CLOSED_ADVERB;
 	static const char words[] =
-		"tell|say|know|wonder|give|measure|compute|calculate|ok|hey|hi|hello|and|so|want|like|to|"
+		"tell|list|name|enumerate|describe|show|say|know|wonder|give|measure|compute|calculate|ok|hey|hi|hello|and|so|want|like|to|"
 		"if|here|there|now|then|around|about|in|total|altogether|roughly|approximately|exactly|"
 		"need|find|out|see|check|just|well|sorry|excuse|thanks|whether|or|estimate|guess|work|figure|"
 		"maybe|perhaps|by";
@@ -152,7 +154,7 @@ static int match(struct matching *m, const char *said, int at)
 	const int is_free = said[length - 1] == '?';
 	if (is_element(m->tokens, at, said, length - (size_t)is_free)) {
 		const struct capture before = m->of[CAPTURE_WORD];
-		if (*said == '$' || *said == '%')
+		if (strchr("$%#", *said))
 			m->of[CAPTURE_WORD] = (struct capture){at, at + 1};
 		if (match(m, rest, at + 1))
 			return 1;
@@ -244,6 +246,9 @@ static void take(struct question_asked *q, size_t row, const struct matching *m,
 		if (word.end || (tokens_class(m->tokens, i) == CLOSED_PLACE && !is_side(closed)))
 			closed = m->tokens->word[i].closed;
 	q->relation = closed < 0 ? -1 : closed_words[closed].relation;
+	if (strchr(rows[row].said, '#'))
+		q->least = (tokens_is(m->tokens, word.begin, "one") ? 1 : closed_words[closed].value) +
+			   (strstr(rows[row].said, "more") != NULL);
 	const struct capture about = m->of[m->of[CAPTURE_A].end ? CAPTURE_A : CAPTURE_B];
 	if (about.end)
 		q->about = (struct parse_span){
@@ -304,6 +309,14 @@ int question_read(struct question_asked *q, const char *text, int way)
 		}
 	snprintf(q->text[0], sizeof q->text[0], "%s", text);
 	return !way;
+}
+
+int question_is_any(const char *phrase)
+{
+	struct tokens t;
+
+	tokens_take(&t, phrase, NULL, NULL, 0);
+	return tokens_is(&t, 0, "a|an|any|some|one|anything|something|anyone|someone|anybody|somebody");
 }
 
 int question_is_open(const char *text)

@@ -30,6 +30,7 @@ struct question_asked {
 	enum question_kind kind;
 	int relation; /* enum parse_relation of the word of size or place that asks ("tall"), or that a place
 			 begins with ("on the tray"); -1 where there is none */
+	int least;    /* of QUESTION_THERE: how many have to be there; 0: any */
 	char text[3][QUESTION_TEXT]; /* what to ask for; "" nothing. The third: what two are compared by */
 	struct parse_span about;     /* of the question: the thing that it asks about; empty: not known */
 };
@@ -43,6 +44,9 @@ int question_read(struct question_asked *q, const char *text, int way);
 
 /* The noun of a phrase: "mug" of "the red mug on the tray"; "": it has none. */
 void question_noun(const char *phrase, char noun[TOKEN_LENGTH]);
+
+/* Whether a phrase means any of its kind: "anything", "a mug", "one of them". */
+int question_is_any(const char *phrase);
 
 /* Whether a text asks for whatever there is, "what can I drink from?", "the ones to read", and not for one.
  */

@@ -7,6 +7,7 @@
 #
 # Prints for each kind how many were answered as a person would: exactly the things, the number, yes or no, a colour, a length within the
 # tolerance, that there is none, or which of two is meant; of `looked-at` also each that was not. KEEP as in said.sh.
+# ASK is another refer-ask, for scenes that KEEP has lifted; with ALONE=1 no question is told what was said before it.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")" && pwd)
@@ -21,10 +22,10 @@ scenes=${KEEP:-$work}
 for file in "$here/questions/$1"/*.jsonl; do
 	name=$(basename "$file" .jsonl)
 	[ "$name" != desk ] || [ -n "${DATA:-}" ] || continue
-	make_scene "$name"
+	[ -n "${ASK:-}" ] || make_scene "$name"
 	# a blank line before each conversation
-	jq -r '(if .after then empty else "" end), .question' "$file" >"$work/questions"
-	"$BIN/refer-ask" -q --json --encoder "$BERT" "$scenes/$name" <"$work/questions" >"$work/replies" || [ $? = 1 ]
+	jq -r --arg alone "${ALONE:-}" '(if .after and $alone == "" then empty else "" end), .question' "$file" >"$work/questions"
+	"${ASK:-$BIN/refer-ask}" -q --json --encoder "$BERT" "$scenes/$name" <"$work/questions" >"$work/replies" || [ $? = 1 ]
 	jq -c --slurpfile replies "$work/replies" --slurpfile asked "$file" -n '
 		def near($x; $off): . > $x * (1 - $off) and . < $x * (1 + $off);
 		range($asked | length) as $i | $asked[$i] | .reply = $replies[$i] | .reply as $r | . + {right: (

@@ -1,15 +1,36 @@
 #!/usr/bin/env bash
 # Usage: [BIN=build/bin] [BERT=DIR] tests/bench/rules.sh
+#        DATA=DIR/desk KEEP=DIR tests/bench/rules.sh questions
 #
 # Leaves out each rule of language (libcommon/lang/rules.def) and prints how many parses it changes of the sentences of
 # tests/bench/said: of those that nobody read who works on the program, of later ones, and of those that were looked at; and of
-# the marked sentences kept for testing.
+# the marked sentences kept for testing. With `questions` how many of the questions of questions.sh, kept back and looked at, are answered
+# wrongly that were not, without each kind of rows of libcommon/lang/question_kinds.tsv, and without what was said before.
 set -euo pipefail
 export LC_ALL=C
 here=$(cd "$(dirname "$0")/../.." && pwd)
 BIN=${BIN:-${BUILD:-$here/build}/bin} BERT=${BERT:-${XDG_CACHE_HOME:-$HOME/.cache}/refersplat/encoder}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
+
+# right SET: how many
+right() { "$here/tests/bench/questions.sh" "$1" 2>/dev/null | sed -n 's,^all\t\([0-9]*\)/.*,\1,p'; }
+
+if [ "${1:-}" = questions ]; then
+	build=$work/build inc=$work/build/tables/lang/question_kinds.inc
+	all=$(right kept-back) && looked=$(right looked-at)
+	cp -a "${BUILD:-$here/build}" "$build"
+	cp "$inc" "$work/all.inc"
+	printf 'rows\tkept back\tlooked at\n'
+	for kind in $(cut -d'"' -f2 "$inc" | sort -u) conversation; do
+		grep -v "{\"$kind\"" "$work/all.inc" >"$inc"
+		make -s -C "$here" BUILD="$build" "$build/bin/refer-ask" >/dev/null
+		export ASK=$build/bin/refer-ask ALONE=
+		[ $kind != conversation ] || ALONE=1
+		printf '%s\t%d\t%d\n' $kind $((all - $(right kept-back))) $((looked - $(right looked-at)))
+	done
+	exit
+fi
 
 sets="kept-back later looked-at test"
 for set in $sets; do

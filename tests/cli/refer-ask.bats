@@ -125,14 +125,36 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 	printf '%s\n' "how tall is the $a?" "how wide is it" "and the $b?" "where is it?" "no, the other one" "" "where is it?" | ask --json run >said || [ $? = 1 ]
 	jq -r '[.kind, .understood // "", .things[0].name // ""] | join("|")' said >lines
 	sed -i 's/|[^|]*$/|/;5s/.*/other/' lines
-	printf '%s\n' "height||" "width|how wide is the $a|" "width|how wide is the $b?|" "which|where is the $b?|" other "which||" | diff - lines
+	printf '%s\n' "height||" "width|how wide is the $a|" "width|how wide is the $b|" "which|where is the $b?|" other "which||" | diff - lines
 	jq -se --arg a "$a" --arg b "$b" '[.[0, 1].things[0].name == $a] + [.[2, 3].things[0].name == $b] + [.[4].things[0].name != $b, (.[5].answered | not)] | all' said
+}
+
+@test "of several that were spoken of no other thing is meant, whatever is asked of them" {
+	tallest=$(kind "which thing is the tallest?" '.things[0].name')
+	mapfile -t two < <(grep -vxF "$tallest" things)
+	for ask in "which of them is the tallest?" "which is the tallest?" "which one is the tallest?"; do
+		printf '%s\n' "the ${two[0]} and the ${two[1]}" "how many of those are there?" "$ask" "how many are ${tallest%% *}?" "where is the $tallest?" |
+			ask --json run >said || [ $? = 1 ]
+		jq -se --arg tallest "$tallest" '[.[1].number == 2, (.[2].things | length == 1), .[2].things[0].name != $tallest,
+			.[3].number == 0, .[4].things[0].name == $tallest] | all' said
+	done
+}
+
+@test "whether all are, and whether one is" {
+	a=$(sed -n 1p things)
+	[ "$(kind "are all the things ${a%% *}?" '[.yes, (.things | length)] | join(" ")')" = "false 3" ]
+	[ "$(kind "is one of the things ${a%% *}?" '[.yes, .things[0].name] | join(" ")')" = "true $a" ]
+	[ "$(kind "are there three things?" .yes)" = true ]
+	[ "$(kind "are there more than three things?" .yes)" = false ]
+	[ "$(ask run "are there at least two things?" | cut -d: -f1)" = yes ]
+	run ask run "are there more than three things?"
+	[ "$status" = 1 ]
 }
 
 @test "what points back within another thing, and a 'that' that begins a clause" {
 	a=$(sed -n 1p things)
 	printf '%s\n' "where is the $a?" "and the one next to that?" "everything that is red" "how many of those are red?" | ask --json run >said || [ $? = 1 ]
-	jq -se --arg a "$a" '[.[1].understood == "the one next to the \($a)?", .[2].understood == null] | all' said
+	jq -se --arg a "$a" '[.[1].understood == "the one next to the \($a)", .[2].understood == null] | all' said
 	[ "$(kind "tell me what you can see" .kind)" = list ]
 }
 

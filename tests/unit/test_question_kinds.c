@@ -36,6 +36,10 @@ static void kinds(void)
 	is("is the mug red?", QUESTION_WHETHER, "the mug", "the mug that is red");
 	is("is there a mug?", QUESTION_THERE, "is there a mug?", "");
 	is("I am thirsty, is there a mug?", QUESTION_THERE, "I am thirsty, is there a mug?", "");
+	is("how many of the mugs have a lid?", QUESTION_NUMBER, "the mugs that have a lid", "");
+	is("are there more than two mugs?", QUESTION_THERE, "all mugs", "");
+	is("what else is red except the mugs?", QUESTION_SET, "everything that is red except the mugs", "");
+	is("is there a mug larger than the jug?", QUESTION_THERE, "a mug that is larger than the jug", "");
 	is("which is taller: the mug or the jug?", QUESTION_COMPARE, "the mug", "the jug");
 }
 
