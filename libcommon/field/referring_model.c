@@ -7,7 +7,7 @@ static const char *const interactions[REFER_INTERACTIONS] = {
 	"none", "attention", "attention+fp", "add", "pcmi", "pcmi-proj"};
 static const char *const similarities[2] = {"dot", "cosine"};
 static const char *const queries[2] = {"words", "parses"};
-static const char *const contrasts[3] = {"none", "dot", "cosine"};
+static const char *const contrasts[] = {"none", "dot", "cosine", "pairs"};
 
 /* The place of a name, or -1. */
 static int find_name(const char *const *names, int n, const char *name)

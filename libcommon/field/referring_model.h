@@ -26,12 +26,13 @@
  *
  * Loss of one sentence r in one view: L = L_bce + lambda L_con.
  * L_bce  mean over pixels of the binary cross-entropy with logits M against the mask
- * L_con  = -1/|E+| sum_{e+ in E+} log( exp(s(e+)/T) / sum_{all e} exp(s(e)/T) ), E+ the sentences of r's
- *        object, "all" the scene's training sentences, or a sample of those of other objects, each counted as
- *        often as makes up for the rest (struct step_others); s(e) = f_g.e (contrast dot) or
- *        f_g.e/(|f_g||e|) (cosine); f_g = mean of f'_i over the k Gaussians of largest m_i (ties: lower
- *        index first), k = max(1, floor(tau N)), tau = max(0.005, 0.1 * 0.6^(iteration/1000)); the choice
- *        itself has no gradient. */
+ * L_con  = -1/|E+| sum_{e+ in E+} log( exp(s(e+)/T) / sum_{all e} exp(s(e)/T) )    (contrast dot, cosine)
+ *          log(1 + sum_{e- not in E+} sum_{e+ in E+} exp((s(e-) - s(e+))/T))         (pairs, the released code's)
+ *        E+ the sentences of r's object, "all" the scene's training sentences, or of either kind a sample, each
+ *        counted as often as makes up for the rest (struct step_others); s(e) = f_g.e (contrast dot) or
+ *        f_g.e/(|f_g||e|) (cosine, pairs); f_g = mean of f'_i over the k Gaussians of largest m_i (ties: lower
+ *        index first), k = max(1, floor(tau N)), tau = max(0.005, 0.1 * 0.6^(iteration/1000)), where Gaussians
+ *        that share a row count each; the choice itself has no gradient. */
 /* clang-format on */
 #pragma once
 
@@ -61,12 +62,18 @@ enum refer_interaction {
 enum refer_similarity { REFER_DOT, REFER_COSINE };
 /* What stands for a sentence: the words of the encoder, as in the paper, or of its parse (field/query.h). */
 enum refer_query { REFER_WORDS, REFER_PARSES };
-enum refer_contrast { REFER_CONTRAST_NONE, REFER_CONTRAST_DOT, REFER_CONTRAST_COSINE };
+enum refer_contrast {
+	REFER_CONTRAST_NONE,
+	REFER_CONTRAST_DOT,
+	REFER_CONTRAST_COSINE,
+	REFER_CONTRAST_PAIRS,
+	REFER_CONTRASTS
+};
 
 #define REFER_INTERACTION_CHOICES "none|attention|attention+fp|add|pcmi|pcmi-proj"
 #define REFER_SIMILARITY_CHOICES "dot|cosine"
 #define REFER_QUERY_CHOICES "words|parses"
-#define REFER_CONTRAST_CHOICES "none|dot|cosine"
+#define REFER_CONTRAST_CHOICES "none|dot|cosine|pairs"
 
 /* The name of an interaction / similarity / contrast, and back (-1: unknown). */
 const char *refer_interaction_name(enum refer_interaction i);

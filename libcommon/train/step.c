@@ -41,7 +41,7 @@ struct step {
 	float *response, *top; /* (padded) one sentence's channel */
 	struct image_loss images;
 	float *dvectors;	  /* (n,128) */
-	double *fg, *dfg, *score; /* (S,128), (S,128), (R) */
+	double *fg, *dfg, *score; /* (S,128), (S,128), (2,R) */
 	struct block_sums sums[CHUNKS];
 	size_t at[PARTS + 1]; /* where each part lies in a chunk's slab, for the current step */
 	float *chunks;	      /* (CHUNKS, chunk_size) */
@@ -209,7 +209,7 @@ static int alloc_sums(struct step *s, int longest, struct err *e)
 	s->chunks = mem_zalloc(CHUNKS, s->chunk_size * sizeof(float), "sums", e);
 	s->total = mem_zalloc(s->chunk_size, sizeof(double), "sums", e);
 	s->dvectors = mem_zalloc(n, REFER_D * sizeof(float), "words", e);
-	s->fg = mem_zalloc(2 * batch * REFER_D + u->sentences, sizeof(double), "contrast", e);
+	s->fg = mem_zalloc(2 * (batch * REFER_D + u->sentences), sizeof(double), "contrast", e);
 	s->places = mem_zalloc(batch, sizeof *s->places, "batch", e);
 	s->chosen = mem_zalloc(u->sentences, sizeof *s->chosen, "batch", e);
 	s->chosen_objects = mem_zalloc(u->sentences, sizeof *s->chosen_objects, "batch", e);
@@ -292,16 +292,17 @@ static double image_losses(
 	return image_loss_run(&s->images, view, s->forward.arrays.m, count, masks, s->forward.arrays.dm);
 }
 
-/* How often each chosen sentence of another object counts, to stand for all of them. */
-static double times_of_others(const struct step *s, int object)
+/* How often each chosen sentence counts, to stand for all: of other objects, and of that one. */
+static void count_times(const struct step *s, int object, double times[2])
 {
-	size_t all = 0, chosen = 0;
+	size_t all[2] = {0}, chosen[2] = {0};
 
 	for (size_t r = 0; r < s->setup.sentences; r++)
-		all += s->setup.objects[r] != object;
+		all[s->setup.objects[r] == object]++;
 	for (size_t k = 0; k < s->chosen_count; k++)
-		chosen += s->chosen_objects[k] != object;
-	return chosen ? (double)all / (double)chosen : 1;
+		chosen[s->chosen_objects[k] == object]++;
+	for (int i = 0; i < 2; i++)
+		times[i] = chosen[i] ? (double)all[i] / (double)chosen[i] : 1;
 }
 
 /* The contrast of each sentence; its gradient goes to fold's dmean and words.de. */
@@ -312,7 +313,7 @@ static double contrast_losses(struct step *s, const struct step_target *targets,
 	for (int i = 0; i < count; i++) {
 		panels_get(s->forward.arrays.m, s->forward.padded, count, i, s->response);
 		memset(s->top, 0, sizeof(float) * s->forward.padded);
-		contrast_top_set(s->response, s->setup.gaussians, top_count, s->top);
+		contrast_top_set(s->response, s->setup.counts, s->setup.gaussians, top_count, s->top);
 		panels_put(s->forward.arrays.top, s->forward.padded, count, i, s->top);
 	}
 	phase_ended(s, STEP_TOP);
@@ -323,9 +324,11 @@ static double contrast_losses(struct step *s, const struct step_target *targets,
 	memset(s->words.de, 0, sizeof(float) * s->chosen_count * REFER_D);
 	for (int i = 0; i < count; i++) {
 		const int object = s->setup.objects[targets[i].sentence];
+		double times[2];
+		count_times(s, object, times);
 		sum += contrast_loss(s->setup.contrast, s->setup.temperature, s->fg + i * REFER_D, s->words.e,
-			       s->chosen_objects, s->chosen_count, object, times_of_others(s, object),
-			       s->setup.lambda / count, s->dfg + i * REFER_D, s->words.de, s->score) /
+			       s->chosen_objects, s->chosen_count, object, times, s->setup.lambda / count,
+			       s->dfg + i * REFER_D, s->words.de, s->score) /
 		       count;
 	}
 	fold_top_back(s->forward.fold, s->dfg, &s->forward.model);
@@ -380,25 +383,20 @@ static void choose(struct step *s, size_t sentence)
 	s->chosen_objects[s->chosen_count++] = s->setup.objects ? s->setup.objects[sentence] : 0;
 }
 
-/* The sentences of the step: all, or the targets, those of their objects, and the others that are named. */
+/* The sentences of the step: all, or the targets and those that are named. */
 static void choose_sentences(struct step *s, const struct step_target *targets, int count, int is_contrasted,
 	const struct step_others *others)
 {
-	const int *objects = s->setup.objects;
+	const int is_all = is_contrasted && !others;
 
 	s->chosen_count = 0;
 	memset(s->is_chosen, 0, s->setup.sentences);
 	for (int i = 0; i < count; i++)
-		s->places[i] = is_contrasted && !others ? targets[i].sentence : (size_t)i;
-	for (int i = 0; i < count && (!is_contrasted || others); i++)
+		s->places[i] = is_all ? targets[i].sentence : (size_t)i;
+	for (int i = 0; i < count && !is_all; i++)
 		choose(s, targets[i].sentence);
-	for (size_t r = 0; r < s->setup.sentences && is_contrasted; r++) {
-		int is_own = !others;
-		for (int i = 0; i < count && !is_own; i++)
-			is_own = objects[r] == objects[targets[i].sentence];
-		if (is_own)
-			choose(s, r);
-	}
+	for (size_t r = 0; r < s->setup.sentences && is_all; r++)
+		choose(s, r);
 	for (size_t k = 0; is_contrasted && others && k < others->count; k++)
 		choose(s, others->list[k]);
 	text_mlp_choose(&s->words, s->chosen, s->chosen_count);
@@ -429,6 +427,16 @@ struct step_losses step_run(struct step *s, const float *parameters, const float
 	backward(s, parameters, count, gradient, dx);
 	losses.total = losses.bce + s->setup.lambda * losses.contrast;
 	return losses;
+}
+
+size_t step_gaussians(const struct step *s)
+{
+	const struct step_setup *u = &s->setup;
+	size_t sum = 0;
+
+	for (size_t i = 0; i < u->gaussians; i++)
+		sum += u->counts ? u->counts[i] : 1;
+	return sum;
 }
 
 void step_respond(struct step *s, const float *parameters, const float *x, size_t sentence, float *m)

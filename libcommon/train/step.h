@@ -20,6 +20,7 @@ struct step_setup {
 	double temperature, lambda;
 	size_t gaussians;	/* N, the rows of features; a view's weights are over them */
 	const float *position;	/* (N,3) means scaled to [-1,1] */
+	const uint32_t *counts; /* (N) how many Gaussians share a row; NULL: it is one */
 	size_t sentences;	/* R */
 	const int64_t *offsets; /* (R+1) into words */
 	const float *words;	/* (offsets[R], D_text) */
@@ -63,9 +64,8 @@ struct step_losses {
 	double total;	      /* bce + lambda contrast */
 };
 
-/* Sentences of other objects that a step's contrast takes: `list` (count) of different ones, which may hold
- * sentences of the targets' objects too. They stand for all: each counts as often as makes up for the others.
- */
+/* Sentences that a step's contrast takes besides the targets. They stand for all: those of an object count as
+ * often as makes up for the rest of its sentences, those of the others for the rest of theirs. */
 struct step_others {
 	const size_t *list;
 	size_t count;
@@ -73,11 +73,14 @@ struct step_others {
 
 /* One step over `count` sentences of one view. x (panels of d_r channels, field/panels.h) are the features.
  * gradient (layout count) and dx (panels) are overwritten with
- * the gradients of the total loss. top_count is contrast_top_count's. others NULL: the contrast is with all
- * sentences. */
+ * the gradients of the total loss. top_count is contrast_top_count's of step_gaussians. others NULL: the
+ * contrast is with all sentences. */
 struct step_losses step_run(struct step *s, const float *parameters, const float *x,
 	const struct view_weights *view, const struct step_target *targets, int count, size_t top_count,
 	const struct step_others *others, float *gradient, float *dx);
+
+/* How many Gaussians its rows are of. */
+size_t step_gaussians(const struct step *s);
 
 /* Responses m (gaussians) of one sentence. */
 void step_respond(struct step *s, const float *parameters, const float *x, size_t sentence, float *m);

@@ -65,16 +65,16 @@ int train_bounds(
 }
 
 int train_order_init(struct train_order *o, const struct train_view *views, size_t view_count, int batch,
-	size_t sentences, size_t negatives, uint64_t seed, struct err *e)
+	const struct train_contrast *contrast, uint64_t seed, struct err *e)
 {
+	const size_t own = (size_t)batch * TRAIN_POSITIVES;
 	size_t pairs = 0, groups = 0;
 
 	*o = (struct train_order){.views = views,
 		.view_count = view_count,
 		.batch = batch,
 		.seed = seed,
-		.sentences = sentences,
-		.negatives = negatives < sentences ? negatives : 0,
+		.contrast = *contrast,
 		.epoch = -1};
 	for (size_t v = 0; v < view_count; v++) {
 		pairs += (size_t)views[v].count;
@@ -83,7 +83,9 @@ int train_order_init(struct train_order *o, const struct train_view *views, size
 	o->groups = (uint32_t)groups;
 	o->order = mem_alloc(groups, 3 * sizeof *o->order, "order", e);
 	o->shuffled = mem_alloc(pairs + view_count + 1, sizeof *o->shuffled, "order", e);
-	o->others = mem_alloc(sentences, sizeof *o->others, "order", e);
+	if (contrast->negatives >= contrast->sentences)
+		o->contrast.negatives = 0;
+	o->others = mem_alloc(own + contrast->sentences, sizeof *o->others, "order", e);
 	if (!o->order || !o->shuffled || !o->others) {
 		train_order_free(o);
 		return -1;
@@ -163,21 +165,47 @@ size_t train_order_next(struct train_order *o, long iteration)
 	return next / (long)o->groups == o->epoch ? view_at(o, next) : SIZE_MAX;
 }
 
-const size_t *train_order_others(struct train_order *o, long iteration)
+/* Up to TRAIN_POSITIVES of the sentences of an object, drawn evenly, before `end`. Returns how many. */
+static size_t draw_own(const struct train_contrast *c, int object, struct rng *r, size_t *end)
 {
+	size_t seen = 0;
+
+	for (size_t k = 0; k < c->sentences; k++) {
+		if (c->objects[k] != object)
+			continue;
+		const size_t at = seen < TRAIN_POSITIVES ? seen : rng_below(r, (uint32_t)seen + 1);
+		if (at < TRAIN_POSITIVES)
+			end[-1 - (ptrdiff_t)at] = k;
+		seen++;
+	}
+	return seen < TRAIN_POSITIVES ? seen : TRAIN_POSITIVES;
+}
+
+struct step_others train_order_others(
+	struct train_order *o, long iteration, const struct step_target *targets, int count)
+{
+	const struct train_contrast *c = &o->contrast;
+	size_t *list = o->others + (size_t)o->batch * TRAIN_POSITIVES, own = 0;
 	struct rng r;
 
-	if (!o->negatives)
-		return NULL;
-	for (size_t k = 0; k < o->sentences; k++)
-		o->others[k] = k;
+	if (!c->negatives)
+		return (struct step_others){0};
+	for (size_t k = 0; k < c->sentences; k++)
+		list[k] = k;
 	rng_seed(&r, o->seed + ((uint64_t)iteration << 32), STREAM_OTHERS);
-	for (size_t k = 0; k < o->negatives; k++) {
-		const size_t from = k + rng_below(&r, (uint32_t)(o->sentences - k)), taken = o->others[from];
-		o->others[from] = o->others[k];
-		o->others[k] = taken;
+	for (size_t k = 0; k < c->negatives; k++) {
+		const size_t from = k + rng_below(&r, (uint32_t)(c->sentences - k)), taken = list[from];
+		list[from] = list[k];
+		list[k] = taken;
 	}
-	return o->others;
+	for (int i = 0; i < count; i++) {
+		const int object = c->objects[targets[i].sentence];
+		int is_drawn = 0;
+		for (int k = 0; k < i; k++)
+			is_drawn |= c->objects[targets[k].sentence] == object;
+		own += is_drawn ? 0 : draw_own(c, object, &r, list - own);
+	}
+	return (struct step_others){list - own, own + c->negatives};
 }
 
 int train_state_init(struct train_state *t, const struct refer_layout *l, size_t gaussians, int keeps_best,
@@ -243,9 +271,9 @@ struct step_losses train_step(struct train_state *t, struct step *s, struct trai
 
 	for (int i = 0; i < count; i++)
 		targets[i] = (struct step_target){(size_t)view->sentences[picks[i]], view->masks[picks[i]]};
-	const struct step_others others = {train_order_others(o, t->iteration), o->negatives};
+	const struct step_others others = train_order_others(o, t->iteration, targets, count);
 	struct step_losses losses = step_run(s, t->values, train_state_x(t), weights, targets, count,
-		contrast_top_count(t->iteration, weights->gaussians), others.list ? &others : NULL,
+		contrast_top_count(t->iteration, step_gaussians(s)), others.list ? &others : NULL,
 		t->gradient, t->gradient + t->parameters);
 	t->sum.bce += losses.bce;
 	t->sum.contrast += losses.contrast;

@@ -26,6 +26,15 @@ int train_active_set(const double *weight, size_t scene_gaussians, double tolera
 int train_bounds(
 	const float *means, const int32_t *ids, size_t n, double low[3], double high[3], struct err *e);
 
+/* What a contrast is with: `negatives` of the sentences, 0 for all. */
+struct train_contrast {
+	size_t sentences, negatives;
+	const int *objects;
+};
+
+/* Sentences of a target's own object that a sampled contrast takes besides. */
+enum { TRAIN_POSITIVES = 4 };
+
 /* The order of training: epochs, each a shuffle of every view's sentences into groups of at most `batch` and
  * of those groups. It depends on seed, epoch and view alone, so that any iteration can be found again. */
 struct train_order {
@@ -33,19 +42,19 @@ struct train_order {
 	size_t view_count;
 	int batch;
 	uint64_t seed;
-	size_t sentences, negatives; /* R; how many a step's contrast is with, 0: all */
-	size_t *others;		     /* (R) */
-	uint32_t groups;	     /* in an epoch */
-	long begin;		     /* the training's iteration where this order begins */
-	long epoch;		     /* that `order` holds, or -1 */
-	uint32_t *order;	     /* (groups) */
-	uint32_t *view, *first;	     /* (groups) the view, and the first of its shuffled sentences */
-	uint32_t *shuffled;	     /* every view's sentences, one after another */
-	uint32_t *start;	     /* (view_count+1) into shuffled */
+	struct train_contrast contrast;
+	size_t *others;		/* (batch * TRAIN_POSITIVES + R) */
+	uint32_t groups;	/* in an epoch */
+	long begin;		/* the training's iteration where this order begins */
+	long epoch;		/* that `order` holds, or -1 */
+	uint32_t *order;	/* (groups) */
+	uint32_t *view, *first; /* (groups) the view, and the first of its shuffled sentences */
+	uint32_t *shuffled;	/* every view's sentences, one after another */
+	uint32_t *start;	/* (view_count+1) into shuffled */
 };
 
 int train_order_init(struct train_order *o, const struct train_view *views, size_t view_count, int batch,
-	size_t sentences, size_t negatives, uint64_t seed, struct err *e);
+	const struct train_contrast *contrast, uint64_t seed, struct err *e);
 void train_order_free(struct train_order *o);
 
 /* The view of an iteration (counted from 0), and which of its sentences: picks (batch) gets *count positions
@@ -57,8 +66,10 @@ size_t train_order_at(struct train_order *o, long iteration, uint32_t *picks, in
 size_t train_order_view(struct train_order *o, long iteration);
 size_t train_order_next(struct train_order *o, long iteration);
 
-/* The sentences that an iteration's contrast is with: `negatives` of all, drawn evenly. NULL: all. */
-const size_t *train_order_others(struct train_order *o, long iteration);
+/* The sentences that an iteration's contrast is with: `negatives` of all, and some of each target's object,
+ * all drawn evenly; some may be there twice. list NULL: all. */
+struct step_others train_order_others(
+	struct train_order *o, long iteration, const struct step_target *targets, int count);
 
 /* The best state so far by the masks that were held out. */
 struct train_best {

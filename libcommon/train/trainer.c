@@ -39,7 +39,12 @@ static int choose_rows(
 			 : rows_of_ids(&t->rows, t->ids, t->learning, n, e))
 		return -1;
 	t->position = mem_alloc(t->rows.n, 3 * sizeof(float), "positions", e);
-	return -(!t->position || train_bounds(from->means, t->ids, t->learning, t->low, t->high, e) ||
+	t->counts = mem_zalloc(t->rows.n, sizeof *t->counts, "rows", e);
+	for (size_t k = 0; t->counts && k < n; k++)
+		if (t->rows.of[k] >= 0)
+			t->counts[t->rows.of[k]]++;
+	return -(!t->position || !t->counts ||
+		 train_bounds(from->means, t->ids, t->learning, t->low, t->high, e) ||
 		 rows_positions(&t->rows, from->means, t->low, t->high, t->position, e));
 }
 
@@ -49,10 +54,10 @@ static int make_rows(
 {
 	const struct warm_start_source source = {
 		from->lifted, &t->rows, from->weight, from->sentences, from->object_names};
+	const struct train_contrast contrast = {from->sentences, (size_t)o->negatives, from->objects};
 
 	if (choose_rows(t, from, o, e) ||
-		(t->warm_steps &&
-			warm_start_init(&t->warm, &source, (size_t)o->negatives, (uint64_t)o->seed, e)))
+		(t->warm_steps && warm_start_init(&t->warm, &source, &contrast, (uint64_t)o->seed, e)))
 		return -1;
 	return row_views_make(&t->views, &t->rows, &from->views, &from->room, e);
 }
@@ -81,6 +86,7 @@ static int init_step(
 		.lambda = o->lambda,
 		.gaussians = t->rows.n,
 		.position = t->position,
+		.counts = t->counts,
 		.sentences = from->sentences,
 		.offsets = from->offsets,
 		.words = from->words,
@@ -95,11 +101,11 @@ static int init(
 	struct trainer *t, const struct trainer_source *from, const struct trainer_options *o, struct err *e)
 {
 	const uint64_t seed = (uint64_t)o->seed;
+	const struct train_contrast contrast = {from->sentences, (size_t)o->negatives, from->objects};
 	struct view_source views;
 
 	if (make_rows(t, from, o, e) || init_step(t, from, o, e) ||
-		train_order_init(&t->order, t->views.views, t->views.n, (int)o->batch, from->sentences,
-			(size_t)o->negatives, seed, e) ||
+		train_order_init(&t->order, t->views.views, t->views.n, (int)o->batch, &contrast, seed, e) ||
 		train_state_init(&t->state, &t->layout, t->rows.n, o->hold_out > 0, seed, e) ||
 		(t->warm_steps && init_features(t, seed, e)))
 		return -1;
@@ -130,7 +136,7 @@ void trainer_free(struct trainer *t)
 	held_out_free(&t->held);
 	octree_free(&t->octree);
 	rows_free(&t->rows);
-	mem_free_all(t->ids, t->position);
+	mem_free_all(t->ids, t->position, t->counts);
 	*t = (struct trainer){0};
 }
 

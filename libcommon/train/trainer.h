@@ -65,6 +65,7 @@ struct trainer {
 	struct rows rows;
 	double low[3], high[3];
 	float *position;	/* (rows,3) */
+	uint32_t *counts;	/* (rows) Gaussians of each */
 	struct row_views views; /* the source's */
 	struct step *step;
 	struct train_order order;

@@ -50,7 +50,7 @@ static const struct cli_option table[] = {{"gaussians", 0, CLI_STRING, &options.
 	{"words", 0, CLI_INT, &options.words, "N", "of a sentence (default 14)", 1, 500},
 	{"sentences", 0, CLI_INT, &options.sentences, "R", "of the scene (default 44)", 1, 100000},
 	{"negatives", 0, CLI_INT, &options.negatives, "K",
-		"sentences of the contrast besides the object's own (default 0: all)", 0, 100000},
+		"sentences of the contrast besides the step's own (default 0: all)", 0, 100000},
 	{"batch", 0, CLI_INT, &options.batch, "S", "sentences in a step (default 1)", 1, 64},
 	{"size", 0, CLI_SIZE, options.size, "WxH", "of the view in pixels (default 318x178)", 1, 10000},
 	{"weights", 0, CLI_INT, &options.weights, "N", "of a pixel, on average (default 56)", 1, 10000},

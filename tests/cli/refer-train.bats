@@ -99,11 +99,12 @@ load refer-train
 		[ "$(meta m similarity)" = cosine ]
 		"$BIN/gs-check" m
 	done
-	for way in none dot; do
+	for way in none dot pairs; do
 		train --contrast $way -o m.$way
 		"$BIN/gs-check" m.$way
 	done
 	not cmp -s m.none m.dot
+	not cmp -s m.none m.pairs
 }
 
 @test "--query parses: the same bytes for any number of threads, a model that is asked by parses, and no other text" {

@@ -22,6 +22,7 @@ struct refer_problem {
 	size_t n;		/* N >= 1 */
 	const double *x;	/* (N,d_r) referring features */
 	const double *position; /* (N,3) means scaled to [-1,1] */
+	const uint32_t *counts; /* (N) how many Gaussians each stands for; NULL: one */
 
 	size_t sentences;      /* R >= 1, "all sentences" of the contrast */
 	const size_t *offsets; /* (R+1) sentence r has the words offsets[r] .. offsets[r+1]-1, one at least */
@@ -40,7 +41,7 @@ struct refer_problem {
 	enum refer_contrast contrast;
 	double temperature; /* T > 0 */
 	double lambda;	    /* weight of the contrast in the loss */
-	double tau;	    /* in [0,1], share of the Gaussians in f_g: k = max(1, floor(tau N)) */
+	double tau;	    /* in [0,1], share of the Gaussians in f_g: k = max(1, floor(tau of all)) */
 };
 
 /* Everything the forward pass computes, under the names of field/referring_model.h; the backward pass reads
@@ -51,20 +52,21 @@ struct refer_result {
 	double *e;					 /* (R,D) */
 	double *feature_hidden0, *feature_hidden1, *f;	 /* (N,32) (N,64) (N,D) */
 	double *position_hidden0, *position_hidden1, *p; /* (N,16) (N,64) (N,D) */
-	double *place;		    /* (N,D) what c is a mean of: p, or p^ for pcmi-proj */
-	double *beta;		    /* (n,N) softmax over Gaussians */
-	double *c;		    /* (n,D) */
-	double *query;		    /* (N,D) what is multiplied with the keys: f, f+p or Q */
-	double *key, *value;	    /* (n,D) w or w+c or K; w or V */
-	double *alpha;		    /* (N,n) softmax over words */
-	double *sum;		    /* (N,D) f' before the LayerNorm */
-	double *rstd;		    /* (N) 1 / standard deviation of a row of sum, eps included (pcmi-proj) */
-	double *refined;	    /* (N,D) f' */
-	double *m;		    /* (N) */
-	double *image;		    /* (P) M(v) */
-	size_t *top;		    /* (k) Gaussians of f_g, largest m first */
-	size_t top_count;	    /* k */
-	double *f_g;		    /* (D) */
+	double *place;	     /* (N,D) what c is a mean of: p, or p^ for pcmi-proj */
+	double *beta;	     /* (n,N) softmax over Gaussians */
+	double *c;	     /* (n,D) */
+	double *query;	     /* (N,D) what is multiplied with the keys: f, f+p or Q */
+	double *key, *value; /* (n,D) w or w+c or K; w or V */
+	double *alpha;	     /* (N,n) softmax over words */
+	double *sum;	     /* (N,D) f' before the LayerNorm */
+	double *rstd;	     /* (N) 1 / standard deviation of a row of sum, eps included (pcmi-proj) */
+	double *refined;     /* (N,D) f' */
+	double *m;	     /* (N) */
+	double *image;	     /* (P) M(v) */
+	size_t *top;	     /* (top_count) Gaussians of f_g, largest m first */
+	size_t top_count;
+	double *top_share; /* (top_count) the share of each in the mean: its count, the last cut, over k */
+	double *f_g;	   /* (D) */
 	double bce, contrast, loss; /* loss = bce + lambda contrast; contrast is 0 where there is none */
 	double *slab;		    /* holds all arrays but top */
 };
@@ -91,6 +93,9 @@ double reference_bce_slope(double logit, int is_set);
 
 /* v / max(|v|, 1e-12), D wide; returns max(|v|, 1e-12). */
 double reference_normalize(const double *v, double *unit);
+
+/* How often a sentence counts. */
+double reference_times(const struct refer_problem *problem, size_t sentence);
 
 /* s(e) / T of each sentence into (R). */
 void reference_sentence_scores(

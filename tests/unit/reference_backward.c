@@ -116,13 +116,50 @@ static void softmax_back(const double *softmax, double *gradient, size_t count)
 		gradient[i] = softmax[i] * (gradient[i] - mean);
 }
 
-/* L_con: to the words of all sentences, and to f' of the top Gaussians. The scores are softmaxed, so each has
- * the slope softmax - (1/|E+| in E+). */
+/* Slopes of the contrast by the scores, which they replace. Softmaxed: softmax - (1/|E+| in E+). */
+static void score_slopes(const struct refer_problem *problem, double *slope)
+{
+	const int object = problem->objects[problem->target];
+	double positives = 0;
+
+	for (size_t r = 0; r < problem->sentences; r++) {
+		slope[r] += log(reference_times(problem, r));
+		positives += problem->objects[r] == object && reference_times(problem, r) > 0;
+	}
+	reference_softmax(slope, problem->sentences);
+	for (size_t r = 0; r < problem->sentences; r++)
+		if (problem->objects[r] == object && reference_times(problem, r) > 0)
+			slope[r] -= 1 / positives;
+}
+
+/* The same of pairs: each pair's share of 1 + their sum, up for the negative and down for the positive. */
+static int pair_slopes(const struct refer_problem *problem, double *slope, struct err *e)
+{
+	const size_t R = problem->sentences;
+	const int object = problem->objects[problem->target];
+	double *found = mem_zalloc(R, sizeof *found, "reference", e), sum = 1;
+
+	for (size_t a = 0; found && a < R; a++)
+		for (size_t b = 0; b < R; b++)
+			if (problem->objects[a] != object && problem->objects[b] == object) {
+				const double pair = reference_times(problem, a) *
+						    reference_times(problem, b) * exp(slope[a] - slope[b]);
+				sum += pair;
+				found[a] += pair;
+				found[b] -= pair;
+			}
+	for (size_t r = 0; found && r < R; r++)
+		slope[r] = found[r] / sum;
+	free(found);
+	return found ? 0 : -1;
+}
+
+/* L_con: to the words of all sentences, and to f' of the top Gaussians. */
 static int contrast_back(const struct pass *pass, struct err *e)
 {
 	const struct refer_problem *problem = pass->problem;
 	const struct refer_result *result = pass->result;
-	double positives = 0, df_g[D] = {0};
+	double df_g[D] = {0};
 
 	if (problem->contrast == REFER_CONTRAST_NONE)
 		return 0;
@@ -130,16 +167,17 @@ static int contrast_back(const struct pass *pass, struct err *e)
 	if (!slope)
 		return -1;
 	reference_sentence_scores(problem, result, slope);
-	reference_softmax(slope, problem->sentences);
-	for (size_t r = 0; r < problem->sentences; r++)
-		positives += problem->objects[r] == problem->objects[problem->target];
+	if (problem->contrast != REFER_CONTRAST_PAIRS) {
+		score_slopes(problem, slope);
+	} else if (pair_slopes(problem, slope, e)) {
+		free(slope);
+		return -1;
+	}
 	for (size_t r = 0; r < problem->sentences; r++) {
 		const double *embedding = result->e + r * D;
 		double de[D] = {0};
-		if (problem->objects[r] == problem->objects[problem->target])
-			slope[r] -= 1 / positives;
 		const double ds = problem->lambda * slope[r] / problem->temperature;
-		if (problem->contrast == REFER_CONTRAST_COSINE) {
+		if (problem->contrast != REFER_CONTRAST_DOT) {
 			double object[D], sentence[D], dobject[D] = {0}, dsentence[D] = {0};
 			reference_normalize(result->f_g, object);
 			reference_normalize(embedding, sentence);
@@ -156,7 +194,7 @@ static int contrast_back(const struct pass *pass, struct err *e)
 			add(pass->d->w + j * D, 1 / (double)(end - begin), de);
 	}
 	for (size_t t = 0; t < result->top_count; t++)
-		add(pass->d->refined + result->top[t] * D, 1 / (double)result->top_count, df_g);
+		add(pass->d->refined + result->top[t] * D, result->top_share[t], df_g);
 	free(slope);
 	return 0;
 }

@@ -75,6 +75,7 @@ struct step *make_step(
 		.lambda = p->lambda,
 		.gaussians = p->n,
 		.position = f->position,
+		.counts = p->counts,
 		.sentences = p->sentences,
 		.offsets = f->offsets,
 		.words = f->words,
@@ -96,7 +97,10 @@ struct view_weights view_of(const struct refer_problem *p, const struct floats *
 
 size_t top_count(const struct refer_problem *p)
 {
-	size_t k = (size_t)(p->tau * (double)p->n);
+	double all = 0;
 
+	for (size_t i = 0; i < p->n; i++)
+		all += p->counts ? p->counts[i] : 1;
+	const size_t k = (size_t)(p->tau * all);
 	return k ? k : 1;
 }

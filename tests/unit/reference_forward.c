@@ -145,6 +145,7 @@ static int allocate(const struct refer_problem *problem, struct refer_result *ou
 		{&out->m, N, 1},
 		{&out->image, problem->pixels, 1},
 		{&out->f_g, D, 1},
+		{&out->top_share, N, 1},
 	};
 	enum { ARRAYS = sizeof arrays / sizeof *arrays };
 	size_t total = 0;
@@ -301,12 +302,16 @@ static void respond(const struct refer_problem *problem, struct refer_result *ou
 /* The k Gaussians of largest m, of equal ones the lower index first, by plain selection. */
 static void choose_top(const struct refer_problem *problem, struct refer_result *out)
 {
-	const size_t N = problem->n, k = (size_t)floor(problem->tau * (double)N);
+	const size_t N = problem->n;
+	double all = 0, left, k;
 
-	out->top_count = k < 1 ? 1 : k;
-	for (size_t i = 0; i < N; i++)
+	for (size_t i = 0; i < N; i++) {
 		out->top[i] = i;
-	for (size_t place = 0; place < out->top_count; place++) {
+		all += problem->counts ? problem->counts[i] : 1;
+	}
+	left = k = fmax(1, floor(problem->tau * all));
+	for (; left > 0; out->top_count++) {
+		const size_t place = out->top_count;
 		size_t best = place;
 		for (size_t i = place + 1; i < N; i++) {
 			const double mi = out->m[out->top[i]], mb = out->m[out->top[best]];
@@ -316,10 +321,17 @@ static void choose_top(const struct refer_problem *problem, struct refer_result 
 		const size_t chosen = out->top[best];
 		out->top[best] = out->top[place];
 		out->top[place] = chosen;
-	}
-	for (size_t t = 0; t < out->top_count; t++)
+		const double taken = fmin(left, problem->counts ? problem->counts[chosen] : 1);
+		out->top_share[place] = taken / k;
+		left -= taken;
 		for (size_t d = 0; d < D; d++)
-			out->f_g[d] += out->refined[out->top[t] * D + d] / (double)out->top_count;
+			out->f_g[d] += out->refined[chosen * D + d] * out->top_share[place];
+	}
+}
+
+double reference_times(const struct refer_problem *problem, size_t sentence)
+{
+	return problem->times ? problem->times[sentence] : 1;
 }
 
 void reference_sentence_scores(
@@ -328,16 +340,28 @@ void reference_sentence_scores(
 	for (size_t r = 0; r < problem->sentences; r++) {
 		const double *e = result->e + r * D;
 		double object[D], sentence[D];
-		if (problem->contrast == REFER_CONTRAST_COSINE) {
+		if (problem->contrast != REFER_CONTRAST_DOT) {
 			reference_normalize(result->f_g, object);
 			reference_normalize(e, sentence);
 			scores[r] = dot(object, sentence, D) / problem->temperature;
 		} else {
 			scores[r] = dot(result->f_g, e, D) / problem->temperature;
 		}
-		if (problem->times)
-			scores[r] += log(problem->times[r]);
 	}
+}
+
+/* log(1 + sum of t- t+ exp(s- - s+) over pairs of a negative and a positive) */
+static double pairs_contrast(const struct refer_problem *problem, const double *scores)
+{
+	double sum = 1;
+
+	for (size_t a = 0; a < problem->sentences; a++)
+		for (size_t b = 0; b < problem->sentences; b++)
+			if (problem->objects[a] != problem->objects[problem->target] &&
+				problem->objects[b] == problem->objects[problem->target])
+				sum += reference_times(problem, a) * reference_times(problem, b) *
+				       exp(scores[a] - scores[b]);
+	return log(sum);
 }
 
 int reference_contrast(const struct refer_problem *problem, const struct refer_result *result,
@@ -352,12 +376,20 @@ int reference_contrast(const struct refer_problem *problem, const struct refer_r
 	if (!scores)
 		return -1;
 	reference_sentence_scores(problem, result, scores);
-	for (size_t r = 0; r < problem->sentences; r++)
-		if (problem->objects[r] == problem->objects[problem->target]) {
+	for (size_t r = 0; r < problem->sentences; r++) {
+		const double times = reference_times(problem, r);
+		if (problem->objects[r] == problem->objects[problem->target] && times > 0) {
 			positive += scores[r];
 			count++;
 		}
-	*contrast = reference_softmax(scores, problem->sentences) - positive / count;
+	}
+	if (problem->contrast == REFER_CONTRAST_PAIRS) {
+		*contrast = pairs_contrast(problem, scores);
+	} else {
+		for (size_t r = 0; r < problem->sentences; r++)
+			scores[r] += log(reference_times(problem, r));
+		*contrast = reference_softmax(scores, problem->sentences) - positive / count;
+	}
 	free(scores);
 	return 0;
 }

@@ -12,10 +12,20 @@
 /* One, a part of a tile, the default and the most. */
 static const int widths[4] = {1, 5, 16, REFER_MAX_X};
 
+/* The contrasts of a sample: of all sentences; of the target with one of its own and of the others; the same
+ * of rows that Gaussians share. */
+static const struct {
+	const char *name;
+	size_t others[2];
+	double times[5]; /* how often each sentence counts then */
+	int is_shared;
+} samples[3] = {{"all", {0}, {1, 1, 1, 1, 1}, 0}, {"some", {4, 1}, {0, 2, 1.5, 0, 1.5}, 0},
+	{"some, of shared rows", {4, 1}, {0, 2, 1.5, 0, 1.5}, 1}};
+
 /* One sample against the reference; returns the worst relative gradient error over the arrays. */
-static double compare(const struct reference_options *o, const char *kernels,
-	const struct step_others *others, const char *name)
+static double compare(const struct reference_options *o, const char *kernels, int sampled, const char *name)
 {
+	const struct step_others some = {samples[sampled].others, 2}, *others = sampled ? &some : NULL;
 	struct reference_sample s;
 	struct refer_result result;
 	struct floats f;
@@ -25,8 +35,11 @@ static double compare(const struct reference_options *o, const char *kernels,
 	floats_init(&f, &s);
 	struct refer_problem *p = &s.problem;
 	const size_t features = p->n * (size_t)o->feature_width;
-	const double times[5] = {1, 2, 1, 0, 1}; /* of two other sentences one stands for both */
-	p->times = others ? times : NULL;
+	uint32_t *counts = mem_alloc(p->n, sizeof *counts, "test", &e);
+	for (size_t i = 0; i < p->n; i++)
+		counts[i] = 1 + (uint32_t)(i * i % 7);
+	p->times = samples[sampled].times;
+	p->counts = samples[sampled].is_shared ? counts : NULL;
 	double *dx = mem_alloc(features, sizeof *dx, "test", &e);
 	double *dparameters = mem_alloc(s.layout.count, sizeof *dparameters, "test", &e), worst = 0;
 	struct step *step = make_step(&s, &f, 1, kernels);
@@ -60,9 +73,7 @@ static double compare(const struct reference_options *o, const char *kernels,
 		CHECK(own < 2e-4, "%s: gradient of %s differs by %.3g", name, s.layout.tensors[t].name, own);
 		worst = own > worst ? own : worst;
 	}
-	free(m);
-	free(dx);
-	free(dparameters);
+	mem_free_all(m, dx, dparameters, counts);
 	step_free(step);
 	reference_free(&result);
 	floats_free(&f);
@@ -75,20 +86,19 @@ static void against_reference(const char *kernels)
 	for (int i = 0; i < REFER_INTERACTIONS; i++)
 		for (int sim = 0; sim < (i == REFER_PCMI_PROJ ? 1 : 2); sim++) {
 			double worst = 0;
-			for (int k = 0; k < 6; k++) { /* each contrast with all others, and with one of two */
-				const int c = k / 2;
-				const struct step_others one = {(size_t[]){1}, 1};
+			for (int k = 0; k < 3 * REFER_CONTRASTS; k++) {
+				const int c = k / 3;
 				struct reference_options o =
 					reference_defaults(7 + (uint64_t)c, (enum refer_interaction)i,
 						(enum refer_similarity)sim, (enum refer_contrast)c);
 				char name[128];
 				o.n = 1500; /* several blocks, the last not full */
 				o.feature_width = widths[k % 4];
-				snprintf(name, sizeof name, "%s, %s, %s, contrast %d%s, width %d", kernels,
-					refer_interaction_name((enum refer_interaction)i),
+				snprintf(name, sizeof name, "%s, %s, %s, contrast %d with %s, width %d",
+					kernels, refer_interaction_name((enum refer_interaction)i),
 					refer_similarity_name((enum refer_similarity)sim), c,
-					k % 2 ? " with one of two" : "", o.feature_width);
-				worst = fmax(worst, compare(&o, kernels, k % 2 ? &one : NULL, name));
+					samples[k % 3].name, o.feature_width);
+				worst = fmax(worst, compare(&o, kernels, k % 3, name));
 			}
 			printf("%s, %s, %s: worst relative gradient error %.2g\n", kernels,
 				refer_interaction_name((enum refer_interaction)i),

@@ -160,6 +160,7 @@ static void check_epoch(struct train_order *o, const int *counts, int batch, lon
 static void test_order(void)
 {
 	const int counts[COUNTS] = {3, 0, 7, 1, 4};
+	const struct train_contrast all = {20, 0, NULL};
 	struct train_view views[COUNTS] = {{.count = 0}};
 	struct err e;
 
@@ -172,8 +173,8 @@ static void test_order(void)
 
 		for (int v = 0; v < COUNTS; v++)
 			groups += (uint32_t)((counts[v] + batch - 1) / batch);
-		CHECK(!train_order_init(&o, views, COUNTS, batch, 20, 0, 9, &e), "%s", e.message);
-		CHECK(!train_order_init(&other, views, COUNTS, batch, 20, 0, 9, &e), "%s", e.message);
+		CHECK(!train_order_init(&o, views, COUNTS, batch, &all, 9, &e), "%s", e.message);
+		CHECK(!train_order_init(&other, views, COUNTS, batch, &all, 9, &e), "%s", e.message);
 		CHECK(o.groups == groups, "batch %d: %u groups", batch, o.groups);
 		for (long epoch = 0; epoch < 5; epoch++)
 			check_epoch(&o, counts, batch, epoch * (long)groups);
@@ -453,37 +454,56 @@ static void test_unseen_first(void)
 	trainer_free(&u);
 }
 
-/* The sentences of a contrast: so many different ones, the same for the same step, each as often as any. */
+/* The sentences of a contrast: so many different ones, and some of the target's object, the same for the same
+ * step, each as often as any. */
 static void test_others(void)
 {
-	enum { SENTENCES = 20, PICKED = 6, STEPS = 4000 };
+	enum { SENTENCES = 20, PICKED = 6, STEPS = 4000, OWN = TRAIN_POSITIVES };
 	struct train_view views[1] = {{.count = 1, .sentences = (int[]){0}}};
+	const struct step_target targets[2] = {{3, NULL}, {6, NULL}};
 	struct train_order o;
-	int drawn[SENTENCES] = {0}, repeats = 0;
+	int objects[SENTENCES], drawn[2][SENTENCES] = {0}, repeats = 0;
 	size_t kept[PICKED] = {0};
 	struct err e;
 
-	CHECK(!train_order_init(&o, views, 1, 1, SENTENCES, PICKED, 3, &e), "%s", e.message);
+	for (int r = 0; r < SENTENCES; r++)
+		objects[r] = r % 2 ? 1 : r % 6 == 0 ? 0 : 2; /* 4 sentences are of object 0, 10 of object 1 */
+	struct train_contrast contrast = {SENTENCES, PICKED, objects};
+	CHECK(!train_order_init(&o, views, 1, 2, &contrast, 3, &e), "%s", e.message);
 	for (long i = 0; i < STEPS; i++) {
-		const size_t *list = train_order_others(&o, i);
-		char is_in[SENTENCES] = {0};
-		for (int k = 0; k < PICKED; k++) {
-			if (!CHECK(list[k] < SENTENCES && !is_in[list[k]], "step %ld draws %zu", i, list[k]))
-				break;
-			is_in[list[k]] = 1;
-			drawn[list[k]]++;
+		const struct step_others others = train_order_others(&o, i, targets, 2);
+		const size_t *list = others.list + 2 * OWN;
+		if (!CHECK(others.count == PICKED + 2 * OWN, "step %ld: %zu", i, others.count))
+			break;
+		for (int k = 0; k < PICKED + 2 * OWN; k++) {
+			const size_t r = others.list[k];
+			int is_new = r < SENTENCES;
+			for (int j = k < 2 * OWN ? 0 : 2 * OWN; j < k; j++)
+				is_new &= others.list[j] != r;
+			CHECK(is_new && (k >= OWN || objects[r] == 0) &&
+					(k < OWN || k >= 2 * OWN || objects[r] == 1),
+				"step %ld draws %zu", i, r);
+			drawn[k < 2 * OWN][r]++;
 		}
 		repeats += i && !memcmp(kept, list, sizeof kept);
 		memcpy(kept, list, sizeof kept);
-		CHECK(!memcmp(kept, train_order_others(&o, i), sizeof kept), "step %ld again", i);
+		const struct step_others again = train_order_others(&o, i, targets, 2);
+		CHECK(!memcmp(kept, again.list + 2 * OWN, sizeof kept), "step %ld again", i);
 	}
 	CHECK(repeats < 5, "%d steps draw as the one before", repeats);
-	for (int r = 0; r < SENTENCES; r++) /* 1200 +- 29, four times that */
-		CHECK(abs(drawn[r] - STEPS * PICKED / SENTENCES) < 116, "%d: drawn %d times", r, drawn[r]);
+	for (int r = 0; r < SENTENCES; r++) { /* 1200 +- 29, 1600 +- 31; four times that */
+		CHECK(abs(drawn[0][r] - STEPS * PICKED / SENTENCES) < 116, "%d: drawn %d times", r,
+			drawn[0][r]);
+		CHECK(abs(drawn[1][r] - (objects[r] == 1     ? STEPS * OWN / 10
+						: objects[r] ? 0
+							     : STEPS)) < 124,
+			"%d: drawn %d times as its object's", r, drawn[1][r]);
+	}
 	train_order_free(&o);
 	for (size_t all = 0; all <= SENTENCES; all += SENTENCES) {
-		CHECK(!train_order_init(&o, views, 1, 1, SENTENCES, all, 3, &e), "%s", e.message);
-		CHECK(!train_order_others(&o, 0), "%zu are all", all);
+		contrast.negatives = all;
+		CHECK(!train_order_init(&o, views, 1, 1, &contrast, 3, &e), "%s", e.message);
+		CHECK(!train_order_others(&o, 0, targets, 1).list, "%zu are all", all);
 		train_order_free(&o);
 	}
 }
