@@ -13,6 +13,7 @@ static const struct cli_option table[] = {
 	CLI_TEXT("encoder", &asking.given.encoder, "DIR",
 		"the encoder's folder (default: where 'make encoder' puts it)"),
 	{"each", 0, CLI_INT, &saying.each, "N", "sentences of each thing (default 200)", 1, 100000},
+	{"absent", 0, CLI_INT, &saying.absent, "N", "sentences of what is not there (default 0)", 0, 100000},
 	{"min-probability", 0, CLI_REAL, &saying.least, "P",
 		"how sure the lifted model has to be of what a sentence means (default 0.6)", 0, 1},
 	{0}};

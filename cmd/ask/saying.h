@@ -6,7 +6,8 @@
 #include "cmd/ask/asking.h"
 
 struct saying_options {
-	long long each; /* sentences of a thing */
+	long long each;	  /* sentences of a thing */
+	long long absent; /* of what is not there */
 	uint64_t seed;
 	double least; /* how sure the choice has to be */
 	const char *output;

@@ -158,3 +158,14 @@ const char *saying_parts_draw(
 
 	return p->n ? p->items[rng_below(r, (uint32_t)p->n)] : NULL;
 }
+
+int saying_parts_have(const struct saying_parts *s, size_t object, const char *noun)
+{
+	for (int kind = SAYING_NOUN; kind <= SAYING_SYNONYM; kind++) {
+		const struct saying_list *p = &s->lists[object * SAYING_KINDS + (size_t)kind];
+		for (size_t i = 0; i < p->n; i++)
+			if (!strcmp(p->items[i], noun))
+				return 1;
+	}
+	return 0;
+}

@@ -30,3 +30,6 @@ void saying_parts_free(struct saying_parts *s);
 /* A random one of an object; NULL where it has none. */
 const char *saying_parts_draw(
 	const struct saying_parts *s, size_t object, enum saying_part kind, struct rng *r);
+
+/* Whether an object is called so. */
+int saying_parts_have(const struct saying_parts *s, size_t object, const char *noun);

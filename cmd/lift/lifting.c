@@ -128,7 +128,8 @@ static int find_sentences(struct lifting *l, struct err *e)
 	const size_t n = l->text.n;
 
 	for (size_t i = 0; i < n; i++)
-		l->trained[i] = l->text.splits[i] == SPLIT_TRAIN ? l->text.objects[i] : NULL;
+		l->trained[i] =
+			l->text.splits[i] == SPLIT_TRAIN && *l->text.objects[i] ? l->text.objects[i] : NULL;
 	if (names_make(&l->refs, l->text.refs, sizeof(char *), 0, n, e) ||
 		names_make(&l->objects_of, l->trained, sizeof(char *), 0, n, e))
 		return -1;

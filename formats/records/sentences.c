@@ -83,10 +83,12 @@ static int read_objects(struct sentence *s, const struct jsonl *j, const cJSON *
 	return 0;
 }
 
-/* The name of the target: where it is not given, that of the only object. What teaches has one. */
+/* The name of the target: where it is not given, that of the only object. What teaches has one, or means
+ * nothing.
+ */
 static int read_target(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
 {
-	const int is_free = s->has_objects && (s->object_count == 1 || s->split == SPLIT_TEST);
+	const int is_free = s->has_objects && (s->object_count <= 1 || s->split == SPLIT_TEST);
 	const char *only = s->object_count == 1 ? s->objects[0] : "";
 
 	if (jsonl_name(j, object, "object", NAME_DATA, !is_free, &s->object, e))

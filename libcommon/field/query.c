@@ -130,6 +130,28 @@ static int put_clauses(struct rows_of *q, const struct parse_phrase *p, int nest
 	return p->ordinal ? put_ordinal(q, p, e) : 0;
 }
 
+static const char *head(const struct rows_of *q, const struct parse_list *noun)
+{
+	return q->parse->words[noun->item[noun->n - 1]].lemma;
+}
+
+/* What is left out: its own words, but not the target's noun that it repeats ("the red one"), and what is
+ * said of it, each as what does not hold. */
+static int put_except(struct rows_of *q, const struct parse_phrase *p, struct err *e)
+{
+	const struct parse_list *noun = &q->parse->phrases->noun;
+	struct parse_phrase own = *p;
+	const size_t before = q->n;
+
+	if (p->noun.n && noun->n && !strcmp(head(q, &p->noun), head(q, noun)))
+		own.noun.n = 0;
+	if (put_words(q, &own, QUERY_TARGET, 1, e) || put_clauses(q, p, 0, e))
+		return -1;
+	for (size_t k = before; k < q->n; k++)
+		set_flag(q, q->rows + k * (size_t)query_width(q->width), QUERY_NEGATED);
+	return 0;
+}
+
 static int put_parse(struct rows_of *q, struct err *e)
 {
 	const struct parse *p = q->parse;
@@ -142,7 +164,7 @@ static int put_parse(struct rows_of *q, struct err *e)
 			return -1;
 	}
 	for (int i = 0; i < p->phrases->except.n; i++)
-		if (put_words(q, &p->phrases[p->phrases->except.item[i]], QUERY_TARGET, 1, e))
+		if (put_except(q, &p->phrases[p->phrases->except.item[i]], e))
 			return -1;
 	return 0;
 }

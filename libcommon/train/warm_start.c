@@ -17,8 +17,11 @@ static const double least = 0.02;
  * is low, and this makes the differences between objects large from the start. */
 static const double length = 8;
 
-/* numbers (sentences): sentence r is of the matched object numbers[r], or -1; lifted (matched): its number
- * among the lifted. */
+/* In place of a sentence's object: it was not lifted; the sentence means nothing that is there. */
+enum { UNKNOWN = -1, NOTHING = -2 };
+
+/* numbers (sentences): sentence r is of the matched object numbers[r], UNKNOWN or NOTHING; lifted (matched):
+ * its number among the lifted. */
 static int match(struct warm_start *w, const struct warm_start_source *from, long *numbers, size_t *lifted,
 	struct err *e)
 {
@@ -31,7 +34,7 @@ static int match(struct warm_start *w, const struct warm_start_source *from, lon
 		return -1;
 	for (size_t r = 0; r < from->sentences; r++) {
 		const size_t o = names_find(&names, from->names[r]);
-		numbers[r] = -1;
+		numbers[r] = *from->names[r] ? UNKNOWN : NOTHING;
 		if (o == NAMES_NONE)
 			continue;
 		if (!number[o]) {
@@ -132,7 +135,7 @@ static int make_masks(struct warm_start *w, const struct warm_start_source *from
 	const size_t pixels = w->view.weights.pixels, bytes = bits_bytes(pixels);
 	SCOPED uint8_t *mask = mem_alloc(pixels, 1, "warm start", e);
 
-	w->bits = mem_alloc(w->objects, bytes, "warm start", e);
+	w->bits = mem_zalloc(w->objects + 1, bytes, "warm start", e); /* the last of nothing */
 	w->view.sentences = mem_alloc(from->sentences, sizeof *w->view.sentences, "warm start", e);
 	w->view.masks = mem_alloc(from->sentences, sizeof *w->view.masks, "warm start", e);
 	if (!mask || !w->bits || !w->view.sentences || !w->view.masks)
@@ -143,15 +146,16 @@ static int make_masks(struct warm_start *w, const struct warm_start_source *from
 		bits_pack(mask, pixels, w->bits + k * bytes);
 	}
 	for (size_t r = 0; r < from->sentences; r++)
-		if (numbers[r] >= 0) {
+		if (numbers[r] != UNKNOWN) {
+			const size_t k = numbers[r] == NOTHING ? w->objects : (size_t)numbers[r];
 			w->view.sentences[w->view.count] = (int)r;
-			w->view.masks[w->view.count++] = w->bits + (size_t)numbers[r] * bytes;
+			w->view.masks[w->view.count++] = w->bits + k * bytes;
 		}
 	return 0;
 }
 
-int warm_start_init(struct warm_start *w, const struct warm_start_source *from, size_t negatives,
-	uint64_t seed, struct err *e)
+int warm_start_init(struct warm_start *w, const struct warm_start_source *from,
+	const struct train_contrast *contrast, uint64_t seed, struct err *e)
 {
 	const size_t rows = from->rows->n;
 	SCOPED long *numbers = mem_alloc(from->sentences, sizeof *numbers, "warm start", e);
@@ -161,7 +165,7 @@ int warm_start_init(struct warm_start *w, const struct warm_start_source *from, 
 	*w = (struct warm_start){0};
 	bad = bad || match(w, from, numbers, lifted, e) || make_shares(w, from, lifted, e) ||
 	      make_pixels(w, rows, e) || make_masks(w, from, rows, numbers, e) ||
-	      train_order_init(&w->order, &w->view, 1, WARM_START_BATCH, from->sentences, negatives, seed, e);
+	      train_order_init(&w->order, &w->view, 1, WARM_START_BATCH, contrast, seed, e);
 	if (bad)
 		warm_start_free(w);
 	return bad ? -1 : 0;

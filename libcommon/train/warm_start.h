@@ -17,7 +17,7 @@ struct warm_start_source {
 	const struct rows *rows;
 	const double *weight; /* (gaussians) how much each counts in its row */
 	size_t sentences;
-	const char *const *names; /* (sentences) of their objects */
+	const char *const *names; /* (sentences) of their objects; "": nothing is there */
 };
 
 struct warm_start {
@@ -29,7 +29,7 @@ struct warm_start {
 	int64_t *indptr;
 	int32_t *index;
 	float *weight;
-	uint8_t *bits; /* (objects, bits_bytes(pixels)) */
+	uint8_t *bits; /* (objects + 1, bits_bytes(pixels)), the last empty */
 };
 
 enum {
@@ -37,9 +37,10 @@ enum {
 	WARM_START_MLP_RATE = 10, /* times the usual rate of the networks: what they fit is free of noise */
 };
 
-/* The view, and the order of its sentences. Those whose object was not lifted have no mask. */
-int warm_start_init(struct warm_start *w, const struct warm_start_source *from, size_t negatives,
-	uint64_t seed, struct err *e);
+/* The view, and the order of its sentences. Those whose object was not lifted have no mask, those
+ * that mean nothing an empty one. */
+int warm_start_init(struct warm_start *w, const struct warm_start_source *from,
+	const struct train_contrast *contrast, uint64_t seed, struct err *e);
 void warm_start_free(struct warm_start *w);
 
 /* x (rows, width): the sum over objects of their share times a direction of the object's, random but at right

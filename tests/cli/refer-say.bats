@@ -38,6 +38,21 @@ say() { "$BIN/refer-say" --encoder "$made/encoder" --each 4 "$@"; }
 		.things[0].name == $said[$i].object and .things[0].probability > 0.799] | all' replies
 }
 
+@test "--absent: sentences that the lifted model refuses, of no object, are taught" {
+	say -o said --absent 6 kitchen
+	"$BIN/gs-check" said
+	jq -se 'map(select(.objects == [] and (has("object") | not))) | length == 6' said
+	jq -r 'select(.objects) | "", .text' said >questions
+	"$BIN/refer-ask" -q --min-probability 0.4 --json --encoder "$made/encoder" kitchen <questions >replies || true
+	jq -sce 'length == 6 and all(.[]; .answered | not)' replies
+	cat "$made/sentences.jsonl" said | "$BIN/text-encode" -q --model "$made/encoder" -o taught
+	"$BIN/refer-lift" -q --scene kitchen/scene --weights "$made/weights" --text taught --masks "$made/masks.jsonl" -o lifted
+	"$BIN/gs-check" lifted
+	"$BIN/refer-train" -q --scene kitchen/scene --weights "$made/weights" --text taught --masks "$made/masks.jsonl" --query parses \
+		--init kitchen/lifted/model.safetensors --init-iterations 4 --iterations 6 -o m
+	"$BIN/gs-check" m
+}
+
 @test "it is encoded with the sentences that it came from, and taught" {
 	say -o said kitchen
 	cat "$made/sentences.jsonl" said | "$BIN/text-encode" -q --model "$made/encoder" -o taught

@@ -77,6 +77,14 @@ static void denials_and_companions(void)
 	q = ask("the mug that is not behind the plate");
 	HAS_ROW(&q, 1, 0, 0, 7, 1, PARSE_BEHIND, QUERY_CLAUSE, QUERY_NEGATED);
 	query_free(&q);
+	q = ask("the mug but not the red one");
+	HAS_ROW(&q, 1, 5, 1, 0, 0, QUERY_TARGET, QUERY_NEGATED);
+	CHECK(q.offsets[1] == 2, "%d rows", (int)q.offsets[1]);
+	query_free(&q);
+	q = ask("the mug but not the one behind the plate");
+	HAS_ROW(&q, 1, 0, 0, 8, 1, PARSE_BEHIND, QUERY_CLAUSE, QUERY_NEGATED);
+	CHECK(q.offsets[1] == 2, "%d rows", (int)q.offsets[1]);
+	query_free(&q);
 	q = ask("the second mug from the left");
 	HAS_ROW(&q, 1, 0, 0, 0, 0, PARSE_LEFT, QUERY_ORDINAL + 1);
 	query_free(&q);

@@ -10,7 +10,7 @@
 #include "train/step.h"
 #include "train/warm_start.h"
 
-enum { N = 200, ROWS = 100, OBJECTS = 3, SENTENCES = 5 };
+enum { N = 200, ROWS = 100, OBJECTS = 3, SENTENCES = 6 };
 
 /* Two Gaussians a row, but for the first 2 of 202, which have none. Object 0 is most of rows 0 to 29, object
  * 1 is row 50 alone, object 2 lies where nothing learns. Sentence 3 is of something that was not lifted. */
@@ -33,7 +33,7 @@ static void scene_init(struct scene *s)
 	int64_t at = 0;
 
 	*s = (struct scene){
-		.names = {spoon, cup, plate}, .sentences = {"cup", "plate", "cup", "fork", "spoon"}};
+		.names = {spoon, cup, plate}, .sentences = {"cup", "plate", "cup", "fork", "spoon", ""}};
 	rng_seed(&rng, 3, 1);
 	for (int i = 0; i < N + 2; i++) {
 		s->of[i] = i < 2 ? -1 : (i - 2) / 2;
@@ -72,7 +72,9 @@ static void test_view(void)
 	int wrong = 0, times[ROWS] = {0};
 
 	scene_init(&s);
-	if (!CHECK(!warm_start_init(&w, &s.source, 0, 1, &e), "%s", e.message))
+	if (!CHECK(!warm_start_init(
+			   &w, &s.source, &(struct train_contrast){s.source.sentences, 0, NULL}, 1, &e),
+		    "%s", e.message))
 		return;
 	CHECK(w.objects == OBJECTS, "%zu objects", w.objects);
 	for (int k = 0; k < OBJECTS; k++)
@@ -95,8 +97,8 @@ static void test_view(void)
 	for (int r = 0; r < ROWS; r++)
 		wrong += times[r] != (r == 50 ? 2 : 1);
 	CHECK(!wrong, "%d pixels are wrong", wrong);
-	const int expected[4] = {0, 1, 2, 4};
-	CHECK(w.view.count == 4 && !w.view.held, "%d sentences", w.view.count);
+	const int expected[5] = {0, 1, 2, 4, 5};
+	CHECK(w.view.count == 5 && !w.view.held, "%d sentences", w.view.count);
 	for (int k = 0; k < w.view.count; k++) {
 		const char *name = s.sentences[expected[k]];
 		const int own = !strcmp(name, "cup") ? 0 : !strcmp(name, "plate") ? 1 : 2;
@@ -104,7 +106,7 @@ static void test_view(void)
 		bits_expand(w.view.masks[k], 0, ROWS + 1, mask);
 		wrong += w.view.sentences[k] != expected[k];
 		for (int p = 0; p <= ROWS; p++)
-			wrong += mask[p] != (w.share[own * ROWS + v->index[p]] > 0.5f);
+			wrong += mask[p] != (*name && w.share[own * ROWS + v->index[p]] > 0.5f);
 	}
 	CHECK(!wrong, "%d masks are wrong", wrong);
 	warm_start_free(&w);
@@ -117,7 +119,9 @@ static void test_features(void)
 	struct err e;
 
 	scene_init(&s);
-	if (!CHECK(!warm_start_init(&w, &s.source, 0, 1, &e), "%s", e.message))
+	if (!CHECK(!warm_start_init(
+			   &w, &s.source, &(struct train_contrast){s.source.sentences, 0, NULL}, 1, &e),
+		    "%s", e.message))
 		return;
 	for (int width = 1; width <= 16; width += 15) {
 		float x[ROWS * 16], again[ROWS * 16], other[ROWS * 16];
@@ -176,7 +180,9 @@ static void test_step(void)
 	o.pixels = ROWS + 1;
 	o.sentences = SENTENCES;
 	reference_sample_init(&sample, &o);
-	if (!CHECK(!warm_start_init(&w, &s.source, 0, 1, &e), "%s", e.message))
+	if (!CHECK(!warm_start_init(
+			   &w, &s.source, &(struct train_contrast){s.source.sentences, 0, NULL}, 1, &e),
+		    "%s", e.message))
 		return;
 	struct refer_problem p = sample.problem;
 	const size_t features = ROWS * (size_t)o.feature_width, parameters = sample.layout.count;
@@ -206,7 +212,8 @@ static void test_step(void)
 	to_floats(p.words, words, vectors);
 	panels_pack(x, ROWS, o.feature_width, panels);
 	const struct step_setup setup = {&sample.layout, p.similarity, p.contrast, p.temperature, p.lambda,
-		ROWS, position, SENTENCES, offsets, vectors, p.objects, ROWS + 1, WARM_START_BATCH, NULL};
+		ROWS, position, NULL, SENTENCES, offsets, vectors, p.objects, ROWS + 1, WARM_START_BATCH,
+		NULL};
 	struct step *step = step_new(&setup, &e);
 	const struct step_target target = {p.target, w.view.masks[2]};
 	CHECK(step && !reference_forward(&p, &result, &e) &&
