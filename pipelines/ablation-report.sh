@@ -106,15 +106,18 @@ unseen() {
 	printf '### Sentences in a wording kept apart\n\n'
 	printf 'Scenes %s, seeds %s; in percent of the pairs of a sentence and a test view.\n\n' "$SCENES" "$SEEDS"
 	printf '| sentences | pairs | right | mIoU | refused | F1@25 |\n|---|---|---|---|---|---|\n'
-	for scene in $SCENES; do
-		for seed in $SEEDS; do
-			cat "$ROOT/$scene-$seed/lift/unseen.answers.json"
-		done
-	done | jq -rs '[.[] | ({"that mean one thing": .one, "that mean several": .several, "that mean nothing there": .none} + .kinds) | to_entries[]
+	for run in $RUNS; do
+		[ "$run" = lift ] || printf '| **%s** | | | | | |\n' "$run"
+		for scene in $SCENES; do
+			for seed in $SEEDS; do
+				cat "$ROOT/$scene-$seed/$run/unseen.answers.json"
+			done
+		done | jq -rs '[.[] | ({"that mean one thing": .one, "that mean several": .several, "that mean nothing there": .none} + .kinds) | to_entries[]
 			| select(.value.pairs > 0)] | group_by(.key) | map({key: .[0].key, pairs: (map(.value.pairs) | add), v: map(.value)})
 		| sort_by(if .key | startswith("that") then [0, -.pairs] else [1, .key] end) | .[]
 		| . as $g | "| \(.key) | \(.pairs) | " + ([("right", "miou", "refused", "f1_25") as $f
 			| ($g.v | map((.[$f] // 0) * .pairs) | add) / $g.pairs | 1000 * . | round / 10 | tostring] | join(" | ")) + " |"'
+	done
 	echo
 }
 
@@ -124,7 +127,7 @@ elif [ "$table" = statistics ]; then
 	statistics
 elif [ "$table" = space ]; then
 	space
-elif [ "$table" = sentences ] || [ "$table" = hard ]; then
+elif [ "$table" = hard ]; then
 	groups | awk -f "$here/ablation-groups.awk" -v runs="$RUNS"
 else
 	values | awk -f "$here/ablation-table.awk" -v table="$table" -v seeds="$SEEDS" -v scenes="$SCENES" "$here/published.tsv" -

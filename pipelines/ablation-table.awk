@@ -10,8 +10,6 @@ BEGIN {
 	title["width"] = "Width of the referring feature (table 7)"
 	title["encoder"] = "Language encoder (table 6)"
 	title["contrast"] = "Contrast, with and without projections"
-	title["settings"] = "Settings of the training"
-	title["steps"] = "Steps of the training"
 	title["taught"] = "Parses in place of words, and sentences of the scene's own"
 	title["lifted"] = "Without training, and from there"
 }

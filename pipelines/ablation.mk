@@ -13,11 +13,12 @@
 # RUNS        trainings to do, of those below; default all. A new one: RUNS="both mine" run.mine="--lambda 0.1"
 # BERTS       more language encoders for the encoder table, as NAME=DIR ...: any folders that text-encode reads, such as clip=DIR of a CLIP
 # BERT        folder of the language encoder; default: where `make encoder` puts it
+# TAUGHT      numbers of sentences of each thing in the table taught; default 0 100
 # THREADS     of each tool; default 1, because -j has several of them at work
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
 # Targets: tables (all but the cost), cost (times its own trainings, so nothing else should run), all, and one for each
-# table: statistics (of the scenes) unseen (answers of the lifted model to sentences in a wording kept apart) modules second (what may teach a second stage) similarity masks interaction width encoder contrast settings steps sentences lifted (and,
+# table: statistics (of the scenes) unseen (answers of the lifted model, or of the trainings in unseen=, to sentences in a wording kept apart) modules second (what may teach a second stage) similarity masks interaction width encoder contrast lifted (and,
 # not in the paper, answers without training, and trainings that start from them) taught (what stands for a sentence, and sentences of the scene's own) hard (the same by what makes a case hard)
 # space (its boxes and outlines of whole objects). Not among them: exact, the modules without the shortcuts of a training
 # step, several times as long; and cells, which prints the scenes and seeds, for many machines: ablation.sbatch. They print;
@@ -30,9 +31,10 @@ OUT ?= ablation
 SIZE ?= quick
 SCENES ?= diner toys tea kitchen
 THREADS ?= 1
+TAUGHT ?= 0 100
 TRAIN ?= --feature-rate 0.01 --mlp-rate 0.0004
-tables := statistics unseen modules second similarity masks interaction width encoder contrast settings steps sentences lifted taught hard space
-$(call check,,OUT BIN BERT,SIZE SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS run.% masks.% text.% steps.% init.% lift.% \
+tables := statistics unseen modules second similarity masks interaction width encoder contrast lifted taught hard space
+$(call check,,OUT BIN BERT,SIZE SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS TAUGHT THREADS run.% masks.% text.% steps.% init.% lift.% \
 	ask.% $(tables) exact)
 ifeq ($(SIZE),full)
 SEEDS ?= 21 22
@@ -48,7 +50,7 @@ $(error SIZE is full or quick)
 endif
 
 # The rules of a scene and a training are made from these.
-$(call check_plain,SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS THREADS)
+$(call check_plain,SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS TAUGHT THREADS)
 
 # The trainings: options; the masks and the word vectors that they learn from, where these are not the usual ones.
 run.none = --interaction none --contrast none
@@ -74,20 +76,9 @@ run.width32 = $(run.both) --feature-width 32
 run.static = $(run.both)
 text.static = static
 run.dot = --interaction pcmi --contrast dot
-run.proj-dot = --interaction pcmi-proj --contrast dot
-run.proj-both = --interaction pcmi-proj --contrast cosine
-run.cold = $(run.both) --temperature 0.05
-run.warm = $(run.both) --temperature 0.2
-run.lambda = $(run.both) --lambda 0.1
-run.slow = $(run.both) --feature-rate 0.0025 --mlp-rate 0.0001
-run.half = $(run.both)
-steps.half = $(shell expr $(ITERATIONS) / 2)
-run.double = $(run.both)
-steps.double = $(shell expr $(ITERATIONS) \* 2)
-run.none-half = $(run.none)
-steps.none-half = $(steps.half)
-run.none-double = $(run.none)
-steps.none-double = $(steps.double)
+run.pairs = --interaction pcmi --contrast pairs
+# The released code's: projections and LayerNorm, its contrast, its weight of that.
+run.released = --interaction pcmi-proj --contrast pairs --lambda 0.1
 run.onscene = $(run.both)
 masks.onscene = masks/scene
 # Other second stages: one mask chosen of stage 1's for each object; stage 1's and the detector's, chosen together in
@@ -108,11 +99,13 @@ run.warmed = $(run.both)
 masks.warmed = masks/scene
 init.warmed = lifted/full
 steps.warmed = 500
-# The lifted objects learned by words and by parses, without and with sentences that the scene writes of itself (refer-say), in as
-# many steps of as many sentences; and parses in the paper's way, from images.
-$(foreach r,words parses words-taught parses-taught,$(eval run.$(r) = $$(run.none) $(if $(findstring parses,$(r)),--query parses) \
-	--feature-rate 0.0025 --mlp-rate 0.0001 --init-iterations 1250)$(eval steps.$(r) = 1250)$(eval masks.$(r) = masks/scene)$(eval init.$(r) = lifted/full))
-$(foreach r,words-taught parses-taught,$(eval text.$(r) = taught))
+# The lifted objects learned by words and by parses, with so many sentences of each thing that the scene writes of itself (refer-say),
+# with the paper's modules and without, in as many steps of as many sentences; and parses in the paper's way, from images.
+taught_runs := $(foreach q,words parses,$(foreach n,$(TAUGHT),$(foreach m,none pcmi gtcl,$(q)-$(n)-$(m))))
+part = $(word $(2),$(subst -, ,$(1)))
+$(foreach r,$(taught_runs),$(eval run.$(r) = $$(run.$(call part,$(r),3)) --query $(call part,$(r),1) --feature-rate 0.0025 --mlp-rate 0.0001 \
+	--init-iterations 1250)$(eval steps.$(r) = 1250)$(eval masks.$(r) = masks/scene)$(eval init.$(r) = lifted/full)$(if \
+	$(filter-out 0,$(call part,$(r),2)),$(eval text.$(r) = taught-$(call part,$(r),2))))
 run.none-parses = $(run.none) --query parses
 
 # Answers of lifted models: which model, and which parts of the choice it goes without.
@@ -142,14 +135,11 @@ masks := both iou top1 first two
 interaction := none attention attention+fp add pcmi proj
 width := width1 width4 both width32
 encoder := both static $(encoders)
-contrast := pcmi dot both proj proj-dot proj-both
-settings := both cold warm lambda slow
-steps := none-half none none-double half both double
+contrast := pcmi dot both pairs released
 second := both two two-chosen two-pooled two-pooled3d onscene two-lifted
 exact := none none-exact pcmi pcmi-exact gtcl gtcl-exact both both-exact two two-exact two-lifted two-lifted-exact
-sentences := both two
 lifted := both two onscene warmed lift-sentence lift-words lift-names lift-colours lift-sizes lift-relations lift lift-voted $(foreach p,$(parts),lift-but-$(p))
-taught := none none-parses words parses words-taught parses-taught
+taught := none none-parses $(taught_runs)
 hard := two warmed lift-relations lift
 space := lift
 unseen := lift
@@ -189,10 +179,10 @@ $(1)/text/parses.jsonl: $(1)/text/contextual.safetensors
 $(1)/text/static.safetensors: $(1)/data/made-by $(1)/log/static.options
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/static,text-encode --words static --model $(BERT) -o $$@ $(1)/data/sentences.jsonl)
-$(1)/text/taught.safetensors: $(1)/lifted/full.safetensors
-	$$(call log,$(1)/log/say,refer-say --scene $(1)/scene --model $$< --encoder $(BERT) --each 100 --seed $(3) -o $(1)/text/said.jsonl $(1))
-	@cat $(1)/data/sentences.jsonl $(1)/text/said.jsonl >$(1)/text/taught.jsonl
-	$$(call log,$(1)/log/taught,text-encode --model $(BERT) -o $$@ $(1)/text/taught.jsonl)
+$(1)/text/taught-%.safetensors: $(1)/lifted/full.safetensors
+	$$(call log,$(1)/log/say,refer-say --scene $(1)/scene --model $$< --encoder $(BERT) --each $$* --seed $(3) -o $(1)/text/said-$$*.jsonl $(1))
+	@cat $(1)/data/sentences.jsonl $(1)/text/said-$$*.jsonl >$(1)/text/taught-$$*.jsonl
+	$$(call log,$(1)/log/taught,text-encode --model $(BERT) -o $$@ $(1)/text/taught-$$*.jsonl)
 $(1)/masks/first.jsonl: $(1)/weights/complete
 	@mkdir -p $$(@D)
 	$$(call log,$(1)/log/first,pseudomask-select --method first --scene $(1)/scene --weights $(1)/weights -o $$@ \
@@ -258,6 +248,8 @@ $(1)/$(3)/model.safetensors: $(1)/$(3)/options $(1)/$(call masks_of,$(3)).jsonl 
 	$$(call log,$(1)/$(3)/train.log,refer-train --scene $(1)/scene --weights $(1)/weights --text $(1)/$(call text_of,$(3)) \
 		--masks $(1)/$(call masks_of,$(3)).jsonl --seed $(2) $(call options_of,$(3)) --checkpoint 0 $(if $(init.$(3)),--init $(1)/$(init.$(3)).safetensors) \
 		--log $(1)/$(3)/losses.jsonl -o $$@)
+$(1)/$(3)/unseen.jsonl: $(1)/$(3)/model.safetensors $(1)/text/unseen.safetensors
+	$$(call log,$(1)/$(3)/unseen.log,refer-render --scene $(1)/scene --text $(1)/text/unseen.safetensors --model $$< -o $$@)
 $(1)/$(3)/%.jsonl: $(1)/$(3)/model.safetensors
 	$$(call log,$(1)/$(3)/render.log,refer-render --scene $(1)/scene --text $(1)/$(call text_of,$(3)) --model $$< \
 		--sentences $$* -o $$@)
@@ -280,7 +272,7 @@ $(1)/text/unseen.safetensors: $(1)/data/made-by
 	$$(call log,$(1)/log/unseen,text-encode --model $(BERT) -o $$@ $(1)/data/unseen.jsonl)
 $(1)/lift/unseen.jsonl: $(1)/lifted/full.safetensors $(1)/text/unseen.safetensors
 	$$(call log,$(1)/lift/unseen.log,refer-render --scene $(1)/scene --text $(1)/text/unseen.safetensors --model $$< -o $$@)
-$(1)/lift/unseen.answers.json: $(1)/lift/unseen.jsonl
+$(1)/%/unseen.answers.json: $(1)/%/unseen.jsonl
 	$(tool)miou-score --answers --json --quiet --predicted-views --sentences $(1)/data/unseen.jsonl --truth $(1)/data/truth.jsonl -o $$@ $$<
 $(1)/lift/visible.%.score.json: $(1)/lift/%.jsonl
 	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/whole.jsonl -o $$@ $$<
@@ -307,18 +299,18 @@ scores: $(call scores_of,$(RUNS))
 cells:
 	@printf '%s\n' $(foreach s,$(SCENES),$(foreach n,$(SEEDS),'$(s) $(n)'))
 define table_rules
-$(1): $(call scores_of,$($(1)))
+$(1): $(if $(filter-out unseen,$(1)),$(call scores_of,$($(1))))
 	@ROOT='$(root)' SCENES='$(SCENES)' SEEDS='$(SEEDS)' RUNS='$(filter $(RUNS),$($(1)))' $(here)ablation-report.sh $(1) | tee $(root)/$(1).md
 endef
 $(foreach t,$(tables) exact,$(eval $(call table_rules,$(t))))
 statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1,$(c)/masks/$(m).quality.json))
 masks: $(foreach c,$(cells),$(c)/masks/first.quality.json $(c)/both/teach.quality.json)
 second: $(foreach c,$(cells),$(foreach m,ciou scene chosen pooled pooled3d lifted,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
-unseen: $(foreach c,$(cells),$(c)/lift/unseen.answers.json)
+unseen: $(foreach c,$(cells),$(foreach r,$(unseen),$(c)/$(r)/unseen.answers.json))
 space: $(foreach c,$(cells),$(foreach k,boxes whole visible,$(foreach t,test train,$(c)/lift/$(k).$(t).score.json)))
 lifted: $(foreach c,$(cells),$(foreach m,ciou scene,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
 
 # Alone on the machine, or its seconds mean nothing.
-cost_runs := none both proj-both
+cost_runs := none both released
 cost: $(foreach r,$(cost_runs) lift,$(firstword $(cells))/$(r)/test.csv $(firstword $(cells))/$(r)/train.csv)
 	@CELL='$(firstword $(cells))' OUT='$(root)/cost' BIN=$(tool) $(here)ablation-cost.sh $(cost_runs) | tee $(root)/cost.md

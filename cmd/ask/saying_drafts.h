@@ -2,8 +2,8 @@
  * lifted choice was asked of which things each relation holds. */
 #pragma once
 
+#include "cmd/ask/saying_facts.h"
 #include "cmd/ask/saying_parts.h"
-#include "synth/wordings.h"
 
 enum { SAYING_LENGTH = 256 };
 
@@ -13,21 +13,12 @@ struct draft {
 	size_t n;
 };
 
-/* A relation to other objects. */
-struct fact {
-	const struct synth_row *kind;
-	size_t anchors[2]; /* the number of objects: none */
-};
-
 struct drafter {
-	struct asking *asking;
 	size_t objects;
 	struct saying_parts parts;
 	struct synth_wordings wordings;
-	struct fact *facts;   /* (fact_count) */
-	double *holds;	      /* (fact_count, objects) */
-	double (*centres)[3]; /* (objects) to the right, away and up */
-	size_t fact_count, fact_room, holds_room;
+	struct facts facts;
+	char *fits;	/* (objects) what a draft may mean so far */
 	uint32_t nouns; /* of lang/kinds.h */
 	struct rng rng;
 };

@@ -159,13 +159,12 @@ const char *saying_parts_draw(
 	return p->n ? p->items[rng_below(r, (uint32_t)p->n)] : NULL;
 }
 
-int saying_parts_have(const struct saying_parts *s, size_t object, const char *noun)
+int saying_parts_have(const struct saying_parts *s, size_t object, enum saying_part kind, const char *text)
 {
-	for (int kind = SAYING_NOUN; kind <= SAYING_SYNONYM; kind++) {
-		const struct saying_list *p = &s->lists[object * SAYING_KINDS + (size_t)kind];
-		for (size_t i = 0; i < p->n; i++)
-			if (!strcmp(p->items[i], noun))
-				return 1;
-	}
-	return 0;
+	const struct saying_list *p = &s->lists[object * SAYING_KINDS + kind];
+
+	for (size_t i = 0; i < p->n; i++)
+		if (!strcmp(p->items[i], text))
+			return 1;
+	return kind == SAYING_NOUN && saying_parts_have(s, object, SAYING_SYNONYM, text);
 }

@@ -31,5 +31,5 @@ void saying_parts_free(struct saying_parts *s);
 const char *saying_parts_draw(
 	const struct saying_parts *s, size_t object, enum saying_part kind, struct rng *r);
 
-/* Whether an object is called so. */
-int saying_parts_have(const struct saying_parts *s, size_t object, const char *noun);
+/* Whether an object has the part; a noun may be a synonym. */
+int saying_parts_have(const struct saying_parts *s, size_t object, enum saying_part kind, const char *text);

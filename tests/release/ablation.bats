@@ -121,23 +121,14 @@ report() {
 }
 
 @test "a training of one's own is a row of its own" {
-	run ablation settings RUNS="both mine" run.mine="--lambda 0.5" settings="both mine"
+	run ablation contrast RUNS="both mine" run.mine="--lambda 0.5" contrast="both mine"
 	[ "$status" = 0 ]
 	grep -qE '^\| mine \| ( \| [0-9.]+){4} \|$' <<<"$output"
 }
 
-@test "the table of steps has half and twice the steps, with and without the modules" {
-	ablation steps >first.log 2>&1
-	[ "$(grep -cE '^\| [^|]+ \|[^|]*( \| [0-9.]+){4} \|$' out/quick/steps.md)" = 6 ]
-	for run in none-half:10 none:20 none-double:40 half:10 both:20 double:40; do
-		grep -q -- "--iterations ${run#*:} " "out/quick/diner-1/${run%:*}/options"
-	done
-	cut -d' ' -f5- out/quick/diner-1/none/options | cmp - <(cut -d' ' -f5- out/quick/diner-1/none-double/options)
-}
-
 @test "the cost table times a training and weighs its model" {
-	ablation scores RUNS="none both proj-both lift" >/dev/null 2>&1
-	run ablation cost RUNS="none both proj-both lift"
+	ablation scores RUNS="none both released lift" >/dev/null 2>&1
+	run ablation cost RUNS="none both released lift"
 	[ "$status" = 0 ]
 	grep -qE '^\| lifted: .* \| [0-9.]+ \+ [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \|$' <<<"$output"
 	grep -qE '^\| both: .* \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \| [0-9.]+ \|$' <<<"$output"
