@@ -289,6 +289,16 @@ static int choose_answer(
 	return 0;
 }
 
+/* What all are told without a sentence; and what is expected already. */
+static int is_expected(const struct encoding *x, const struct question_asked *q, const char *text)
+{
+	size_t i = 0;
+
+	while (i < x->sentences.n && strcmp(x->sentences.items[i].text, text) != 0)
+		i++;
+	return q->kind == QUESTION_LIST || i < x->sentences.n;
+}
+
 void asking_expect(struct asking *a, const char *const *questions, size_t n)
 {
 	struct err e;
@@ -302,10 +312,11 @@ void asking_expect(struct asking *a, const char *const *questions, size_t n)
 		question_read(&q, questions[i], 0);
 		for (int k = 0; k < 3 && !bad; k++) {
 			snprintf(ref, sizeof ref, "%zu.%d", i, k);
-			bad = *q.text[k] && sentences_add(&a->ahead.sentences, ref, "?", q.text[k], &e);
+			bad = *q.text[k] && !is_expected(&a->ahead, &q, q.text[k]) &&
+			      sentences_add(&a->ahead.sentences, ref, "?", q.text[k], &e);
 		}
 	}
-	if (!n || (!bad && !encode(&a->ahead, &a->encoder, &report_silent, &e)))
+	if (!a->ahead.sentences.n || (!bad && !encode(&a->ahead, &a->encoder, &report_silent, &e)))
 		return;
 	encoding_free(&a->ahead);
 	a->ahead = (struct encoding){0};

@@ -7,6 +7,8 @@
 #include "cmd/text/encode.h"
 #include "formats/records/json.h"
 
+#include <omp.h>
+
 enum { AT_ONCE = 16 /* questions that are encoded together */ };
 
 static void expect(struct serving *s, const struct serving_job *jobs)
@@ -33,6 +35,7 @@ static void *work(void *data)
 {
 	struct serving *s = data;
 
+	omp_set_num_threads(s->threads); /* a thread does not inherit that */
 	for (;;) {
 		pthread_mutex_lock(&s->lock);
 		while (!s->first && !s->is_ending)
@@ -78,6 +81,7 @@ int serving_open(
 	struct serving *s, const struct serving_options *options, const struct report *to, struct err *e)
 {
 	s->options = options;
+	s->threads = omp_get_max_threads();
 	s->to = to;
 	s->asking_options = (struct asking_options){.run = options->run,
 		.given.encoder = options->encoder,

@@ -56,6 +56,7 @@ struct serving {
 	struct cameras cameras; /* of the scene */
 
 	pthread_t thread; /* that has what follows */
+	int threads;	  /* of OpenMP, there */
 	struct asking *asking;
 	long revision;	 /* how often it was read */
 	char **labelled; /* (labelled_count) names of what was labelled */

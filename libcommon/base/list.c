@@ -15,7 +15,7 @@ int list_has(const char *words, const char *word)
 {
 	for (;; words++) {
 		const char *w = word;
-		while (*w && *w == *words)
+		while (*w && *w != '|' && *w == *words)
 			w++, words++;
 		if (!*w && (!*words || *words == '|'))
 			return 1;

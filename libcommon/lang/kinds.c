@@ -21,13 +21,14 @@ static const char *first_line(void)
 /* Whether a word is among those of a line. */
 static int has(const char *line, const char *word)
 {
-	const size_t length = strlen(word);
-
 	for (const char *p = strchr(line, '\t'); *p && *p != '\n';) {
-		const size_t n = strcspn(++p, " \n");
-		if (n == length && !memcmp(p, word, n))
+		const char *w = word;
+		for (p++; *w && *w != ' ' && *w == *p; p++)
+			w++;
+		if (!*w && (*p == ' ' || *p == '\n'))
 			return 1;
-		p += n;
+		while (*p != ' ' && *p != '\n')
+			p++;
 	}
 	return 0;
 }
@@ -83,14 +84,26 @@ const char *kinds_has(const char *lemma, size_t *length)
 	return NULL;
 }
 
-double kinds_share(const char *a, const char *b)
+void kinds_find(struct kinds_lines *to, const char *lemma)
 {
-	double best = 0;
+	int line = 0;
 
-	for (const char *p = first_line(); *p; p = next_line(p)) {
-		const double chance = strtod(p, NULL);
-		if (chance > best && has(p, a) && has(p, b))
-			best = chance;
+	*to = (struct kinds_lines){{0}};
+	for (const char *p = first_line(); *p && line < KINDS_LINES; p = next_line(p), line++)
+		to->bits[line / 64] |= (uint64_t)has(p, lemma) << line % 64;
+}
+
+double kinds_share(const struct kinds_lines *a, const struct kinds_lines *b)
+{
+	const uint64_t both[] = {a->bits[0] & b->bits[0], a->bits[1] & b->bits[1]};
+	double best = 0;
+	int line = 0;
+
+	if (!(both[0] | both[1]))
+		return 0;
+	for (const char *p = first_line(); *p && line < KINDS_LINES; p = next_line(p), line++) {
+		const double chance = both[line / 64] >> line % 64 & 1 ? strtod(p, NULL) : 0;
+		best = chance > best ? chance : best;
 	}
 	return best;
 }

@@ -1,7 +1,5 @@
 #include "lang/naming.h"
 
-#include "lang/kinds.h"
-
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -16,9 +14,10 @@ static void find(struct naming *to, const char *lemma, void (*noun)(struct wordn
 	snprintf(joined, sizeof joined, "%s", lemma);
 	for (char *p = joined; (p = strchr(p, ' '));)
 		*p = '_';
-	to->lemma = lemma;
 	noun(&to->noun, joined);
+	to->lemma = lemma;
 	things_find(&to->things, lemma);
+	kinds_find(&to->kinds, lemma);
 }
 
 void naming_of_word(struct naming *to, const char *lemma)
@@ -42,6 +41,7 @@ double naming_fits(const struct naming *word, const struct naming *known, int is
 
 	if (is_general)
 		return x;
-	return fmax(x, things_share(&word->things, &known->things) ? of_line
-								   : kinds_share(word->lemma, known->lemma));
+	return fmax(x, things_share(&word->things, &known->things)
+			       ? of_line
+			       : kinds_share(&word->kinds, &known->kinds));
 }

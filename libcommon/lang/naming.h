@@ -4,6 +4,7 @@
  * (lang/things.h); and the groups of nouns for things that look alike (lang/kinds.h). */
 #pragma once
 
+#include "lang/kinds.h"
 #include "lang/things.h"
 #include "lang/wordnet.h"
 
@@ -11,10 +12,11 @@ struct naming {
 	const char *lemma; /* the caller's; words joined by one space */
 	struct wordnet_noun noun;
 	struct things_rows things;
+	struct kinds_lines kinds;
 };
 
-/* What is known of a word that asks for a thing, and of a word that a thing is called by: a plate that is
- * called a dish is no food. */
+/* What is known of a word that asks for a thing, and of a word that a
+ * thing is called by: a plate that is called a dish is no food. */
 void naming_of_word(struct naming *to, const char *lemma);
 void naming_of_thing(struct naming *to, const char *lemma);
 

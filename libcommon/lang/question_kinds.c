@@ -32,7 +32,8 @@ struct matching {
 	const char *text;
 	const struct tokens *tokens;
 	struct capture of[CAPTURES];
-	int skip; /* ways that are passed over */
+	int skip;		     /* ways that are passed over */
+	int idle_before, idle_after; /* up to which word all are idle, and from which on */
 };
 
 const char *question_name(enum question_kind kind)
@@ -93,8 +94,8 @@ static int is_aside(const struct tokens *t, const char *text, int at)
 	       (class < 0 || !(more >> class & 1));
 }
 
-/* Whether words say nothing more of what is asked for, before it or behind it. */
-static int are_idle(const struct tokens *t, int begin, int end)
+/* Whether a word says nothing more of what is asked for, before it or behind it. */
+static int is_idle(const struct tokens *t, int i)
 {
 	static const unsigned idle =
 		1U << CLOSED_PRONOUN | 1U << CLOSED_AUXILIARY | 1U << CLOSED_REQUEST | 1U << CLOSED_ADVERB;
@@ -103,13 +104,9 @@ static int are_idle(const struct tokens *t, int begin, int end)
 		"if|here|there|now|then|around|about|in|total|altogether|roughly|approximately|exactly|"
 		"need|find|out|see|check|just|well|sorry|excuse|thanks|whether|or|estimate|guess|work|figure|"
 		"maybe|perhaps|by";
+	const int class = tokens_class(t, i);
 
-	for (; begin < end; begin++) {
-		const int class = tokens_class(t, begin);
-		if ((class < 0 || !(idle >> class & 1)) && !tokens_is(t, begin, words))
-			return 0;
-	}
-	return 1;
+	return (class >= 0 && idle >> class & 1) || tokens_is(t, i, words);
 }
 
 static int match(struct matching *m, const char *said, int at);
@@ -138,8 +135,7 @@ static int match(struct matching *m, const char *said, int at)
 	const char *rest = said + length + (said[length] == ' ');
 
 	if (!length)
-		return (are_idle(m->tokens, at, m->tokens->n) || is_aside(m->tokens, m->text, at)) &&
-		       !m->skip--;
+		return (at >= m->idle_after || is_aside(m->tokens, m->text, at)) && !m->skip--;
 	if (*said == ',') {
 		if (at == m->tokens->n || !at || !is_break(m->tokens, m->text, at))
 			return 0;
@@ -291,15 +287,20 @@ static void leave_fillers(struct tokens *t)
 int question_read(struct question_asked *q, const char *text, int way)
 {
 	struct tokens t;
+	struct matching from = {.text = text, .tokens = &t};
 
 	*q = (struct question_asked){.relation = -1};
 	tokens_take(&t, text, NULL, NULL, 0);
 	leave_fillers(&t);
+	while (from.idle_before < t.n && is_idle(&t, from.idle_before))
+		from.idle_before++;
+	for (from.idle_after = t.n; from.idle_after && is_idle(&t, from.idle_after - 1);)
+		from.idle_after--;
 	for (size_t row = 0; row < sizeof rows / sizeof *rows; row++)
 		for (int at = 0; at < t.n; at++) {
-			struct matching first = {.text = text, .tokens = &t}, m = first;
+			struct matching first = from, m = from;
 			m.skip = way;
-			if ((!are_idle(&t, 0, at) && !is_break(&t, text, at)) ||
+			if ((at > from.idle_before && !is_break(&t, text, at)) ||
 				!match(&first, rows[row].said, at))
 				continue;
 			if (!match(&m, rows[row].said, at))

@@ -71,6 +71,8 @@ static int is_slip_of_noun(const struct suspect *s, const char *noun)
 	const size_t length = strlen(noun), forms = length && strchr("sxzho", noun[length - 1]) ? 3 : 2;
 	char form[SPELLING_LENGTH + 2];
 
+	if (*noun != s->word[0] && *noun != s->word[1])
+		return 0; /* no slip changes the first letter, but an exchange */
 	for (size_t i = 0; i < forms && length < SPELLING_LENGTH - 2; i++) {
 		snprintf(form, sizeof form, "%s%s", noun, plurals[i]);
 		if (is_slip_of(s, form))

@@ -12,7 +12,7 @@ enum {
 	PARTS_A_THREAD = 4,
 	TURNED_ROWS =
 		96, /* of the input, and outputs, of a part of a layer: a multiple of every tile's sides */
-	TURNED_OUT = 192,
+	TURNED_OUT = 384,
 	TURNED_OUT_LEAST = 48,
 	SMALL = 1 << 20 /* below this many terms a parallel loop costs more than it saves */
 };
@@ -180,12 +180,24 @@ void linear_weight_take(float *to, const struct linear_weight *w, size_t first, 
 		memcpy(to, w->floats + first, n * sizeof *to);
 }
 
+/* `rows` rows of halves that are wanted soon. */
+static void prefetch_weights(
+	const struct linear_layer *l, size_t row, size_t rows, size_t first, size_t terms)
+{
+	for (size_t i = row; i < row + rows && i < l->out_width; i++)
+		for (size_t k = 0; k < terms; k += 32)
+			__builtin_prefetch(
+				(const char *)l->weight.halves + 2 * (i * l->in_width + first + k));
+}
+
 /* `rows` rows of a layer's weights, `terms` of each, and zeros to `padded` rows: (padded,terms). */
 static void take_weights(float *to, const struct linear_layer *l, size_t row, size_t rows, size_t first,
 	size_t terms, size_t padded)
 {
 	for (size_t i = 0; i < rows; i++)
 		linear_weight_take(to + i * terms, &l->weight, (row + i) * l->in_width + first, terms);
+	if (l->weight.halves)
+		prefetch_weights(l, row + rows, rows, first, terms);
 	memset(to + rows * terms, 0, (padded - rows) * terms * sizeof *to);
 }
 
@@ -199,7 +211,7 @@ static void run_turned(const struct linear_tile *tile, const struct linear_layer
 	const struct linear_matrix in = {l->in, 1, l->in_width};
 	const size_t padded = (rows + tile->columns - 1) / tile->columns * tile->columns;
 
-	for (size_t i = 0; i < TURNED_OUT; i++)
+	for (size_t i = 0; i < (outputs + tile->rows - 1) / tile->rows * tile->rows; i++)
 		for (size_t j = 0; j < padded; j++)
 			sums[i * TURNED_ROWS + j] = l->bias && i < outputs ? l->bias[output + i] : 0;
 	for (size_t first = 0; first < l->in_width; first += LINEAR_BLOCK) {

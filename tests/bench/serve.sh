@@ -19,7 +19,8 @@ address=$(sed 's,/#.*,,' "$work/address")
 load() {
 	{
 		jq -Rs 'split("\n") | map(select(. != ""))' "$2" | sed '1s/.*/local all = {/; $s/.*/}/'
-		printf 'local k = 0\nfunction init(args) math.randomseed(os.time()) k = math.random(#all) end\n'
+		printf 'local k, clients = 0, 0\nfunction setup(thread) clients = clients + 1 thread:set("client", clients) end\n'
+		printf 'function init(args) math.randomseed(os.time() * 64 + client) k = math.random(#all) end\n'
 		printf 'function request() k = k + 1 return wrk.format("POST", "/v1/ask", nil, "{\\"question\\": \\"" .. all[k %% #all + 1]:gsub("[\\"\\\\]", "") .. %s .. "\\"}") end\n' "$3"
 	} >"$work/$1.lua"
 	printf '%s: ' "$1"

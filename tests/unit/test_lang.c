@@ -50,8 +50,20 @@ static void colours(void)
 		"red is called %g red, %g green", share[colour_word("red")], share[colour_word("green")]);
 }
 
+static double share(const char *a, const char *b)
+{
+	struct kinds_lines first, second;
+
+	kinds_find(&first, a);
+	kinds_find(&second, b);
+	return kinds_share(&first, &second);
+}
+
 static void kinds(void)
 {
+	struct kinds_lines lines;
+	char last[KINDS_LENGTH];
+
 	CHECK(finish_of("ring") >= 0 && finish_of("jar") == -1 && finish_of("") == -1 &&
 			finish_of("ban") == -1 && finish_fits(finish_of("ring"), finish_of("banded")) == 1 &&
 			finish_fits(finish_of("plain"), finish_of("striped")) == -1 &&
@@ -60,12 +72,13 @@ static void kinds(void)
 	CHECK(kinds_listed("holder", "jar") && !kinds_listed("holder", "jam") &&
 			!kinds_listed("gathering", ""),
 		"what holds others");
-	CHECK(kinds_share("cube", "box") > 0 && kinds_share("box", "cube") > 0 &&
-			kinds_share("cube", "ball") == 0,
-		"kinds");
-	CHECK(kinds_share("", "box") == 0 && kinds_share("ox", "box") == 0 &&
-			kinds_share("box block", "box") == 0,
+	CHECK(share("cube", "box") > 0 && share("box", "cube") > 0 && share("cube", "ball") == 0, "kinds");
+	CHECK(share("", "box") == 0 && share("ox", "box") == 0 && share("box block", "box") == 0,
 		"whole words");
+	for (long at = 0; kinds_next(&at, last);) {
+		kinds_find(&lines, last);
+		CHECK(kinds_have(last) && (lines.bits[0] || lines.bits[1]), "%s is in no line", last);
+	}
 }
 
 static void comparisons(void)
