@@ -12,7 +12,7 @@
 /* Questions that wait together are encoded together: 200 of them take 5.3 s one by one, 3.5 by four, 3.0 by
  * 16 or 64 (one thread, 0.6 s of it loading). */
 enum { AT_ONCE = 16 };
-/* The exit status of one question where two things are as likely. */
+/* The exit status of one question where two things are as likely, or of a guess. */
 enum { ASK_UNSURE = 5 };
 
 static struct {
@@ -36,6 +36,8 @@ static const struct cli_option table[] = {
 		"where questions are asked: left and right are as seen from there (default: between the training views)"),
 	{"min-probability", 0, CLI_REAL, &options.asking.least, "P",
 		"a question less likely to mean anything that is here is refused (default 0.5)", 0, 1},
+	CLI_SWITCH("always", &options.asking.is_always,
+		"what would be refused is answered by the likeliest thing, as a guess, with exit status 5"),
 	CLI_TEXT("without", &options.asking.without, "PART,...",
 		"choose without parts of the choice, as refer-render does"),
 	CLI_SWITCH("explain", &options.asking.is_explained,
@@ -64,7 +66,7 @@ static int answer(const struct cli *c, struct asking *a, const char *question, s
 
 	if (reply_make(&told, &found, a, question, talk, &options.reply, cli_report(&to, c), e))
 		return -1;
-	*status = answer_is_no(&told) ? ERR_CHECK : told.is_unsure ? ASK_UNSURE : ERR_NONE;
+	*status = answer_is_no(&told) ? ERR_CHECK : told.is_unsure || found.is_guess ? ASK_UNSURE : ERR_NONE;
 	int bad = c->json ? answer_put_json(&told, stdout, e) : answer_put_words(&told, stdout, e);
 	if (!bad && fflush(stdout))
 		bad = err_errno(e, "stdout");

@@ -129,6 +129,7 @@ static int list(struct answer_told *t, struct asking_answer *found, struct askin
 {
 	if (asking_ask(a, t->understood, 0, found, to, e))
 		return -1;
+	found->is_guess = 0;
 	found->count = 0;
 	found->runner_up = ASKING_NONE;
 	for (size_t o = 0; o < a->model.lifted.objects; o++) {
@@ -220,7 +221,8 @@ static int answer_set(struct answer_told *t, struct asking_answer *found, struct
 
 	if (asking_ask(a, t->asked.text[0], 0, found, to, e))
 		return -1;
-	if (found->count && found->is_anchor_unknown && !found->is_by_purpose &&
+	found->is_guess |= a->options->is_always && found->is_anchor_unknown && !found->is_by_purpose;
+	if (found->count && found->is_anchor_unknown && !found->is_by_purpose && !a->options->is_always &&
 		found->holds[found->things[0]] < is_said) {
 		snprintf(found->reason, sizeof found->reason, "nothing here is known as what it names");
 		found->count = 0;

@@ -72,6 +72,7 @@ static int take_pair(struct asking_answer *answer, const struct pair *p, const s
 	memcpy(answer->centres, p->of[0].centres, a->model.lifted.objects * sizeof *answer->centres);
 	answer->places = p->of[0].places;
 	answer->there = p->probability;
+	answer->is_guess = p->of[0].is_guess || p->of[p->count - 1].is_guess;
 	if (!(p->probability > 0)) {
 		say_why(p, q, a, answer->reason);
 		return 0;

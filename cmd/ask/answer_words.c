@@ -200,6 +200,8 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 		fputs(a->explained, out);
 	if (a->explained && a->is_by_purpose)
 		fputs("  answered by what the thing is for\n", out);
+	if (a->count && a->is_guess)
+		fputs("a guess: ", out);
 	if (t->is_unsure)
 		put_choice(t, out);
 	else if (is_yes_or_no(t))
@@ -304,6 +306,8 @@ int answer_put_json(const struct answer_told *t, FILE *out, struct err *e)
 		jsontext_number(to, "number", (double)a->count);
 	if (t->is_unsure)
 		jsontext_flag(to, "unsure", 1);
+	if (a->count && a->is_guess)
+		jsontext_flag(to, "guess", 1);
 	jsontext_rounded(to, "probability", a->there);
 	put_things(to, t);
 	if (a->runner_up != ASKING_NONE) {

@@ -283,7 +283,8 @@ static int choose_answer(
 	w->answer->is_by_purpose = choice.is_by_purpose;
 	for (size_t o = 0; o < objects; o++)
 		w->answer->probability[o] = choice.there * (double)probability[o];
-	if (choice.there < a->options->least)
+	w->answer->is_guess = choice.there < a->options->least;
+	if (w->answer->is_guess && (is_all || !a->options->is_always))
 		memset(chosen, 0, objects);
 	sort_things(w->answer, a->model.lifted.names, chosen, objects);
 	return 0;

@@ -31,7 +31,8 @@ struct asking_options {
 	const char *viewpoint;	   /* VIEW or x,y,z; NULL: the usual one */
 	const char *camera;	   /* a file of one camera that is not in the scene; NULL: none */
 	const char *without;	   /* PART,... as choose_without takes it; may be NULL */
-	double least;		   /* a question less likely to mean anything is refused */
+	double least;		   /* a question less likely to mean anything is refused ... */
+	int is_always;		   /* ... or, of one thing that is not asked to be there, guessed */
 	int is_explained, is_json; /* explanations are JSON, else lines of text */
 	int may_be_nameless;	   /* no lifted model is a model of no objects */
 };
@@ -71,6 +72,7 @@ struct asking_answer {
 	int is_anchor_unknown; /* nothing here is known as what a place is told by */
 	double there;	       /* P that the question means anything that is here */
 	int is_by_purpose;     /* what the thing is for told */
+	int is_guess;	       /* it would be refused but for is_always */
 	double *probability;   /* (objects) that each is meant, or one of those meant */
 	char reason[EXPLAIN_REASON]; /* of a refusal */
 	double (*centres)[3];	     /* (objects) to the right, away and up, as seen from the viewpoint */

@@ -140,6 +140,17 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 	done
 }
 
+@test "--always guesses what would be refused, and says so; what is there is answered as without it" {
+	a=$(sed -n 1p things)
+	[ "$(ask run --always "the $a")" = "$(ask run "the $a")" ]
+	run ask run --always "the sofa"
+	[ "$status" = 5 ]
+	[[ $output == "a guess: "* ]]
+	[ "$(ask --json run --always "the sofa" | jq -c '[.answered, .guess, (.things | length), .probability < 0.5]')" = "[true,true,1,true]" ]
+	says 1 "no: nothing here is known as 'sofa'" ask run --always "is there a sofa?"
+	says 1 "none: nothing here is known as 'sofas'" ask run --always "how many sofas are there?"
+}
+
 @test "whether all are, and whether one is" {
 	a=$(sed -n 1p things)
 	[ "$(kind "are all the things ${a%% *}?" '[.yes, (.things | length)] | join(" ")')" = "false 3" ]
