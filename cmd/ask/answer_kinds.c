@@ -154,6 +154,26 @@ static int is_of(const struct asking_answer *a, size_t object)
 	return k < a->count && a->holds[object] >= holds;
 }
 
+static const char unknown_place[] = "nothing here is known as what it names";
+
+/* Nothing is at a thing that is not here, unless sentences say so of the thing. */
+static int is_at_nothing(const struct asking_answer *a, size_t thing)
+{
+	return a->is_anchor_unknown && a->holds[thing] < is_said;
+}
+
+static void drop_at_nothing(const struct answer_told *t, struct asking_answer *found)
+{
+	if (!found->count || !is_at_nothing(found, found->things[0]))
+		return;
+	if (t->asked.kind == QUESTION_SET && t->asking->options->is_always) {
+		found->is_guess = 1;
+		return;
+	}
+	snprintf(found->reason, sizeof found->reason, "%s", unknown_place);
+	found->count = 0;
+}
+
 /* Only what the question surely holds of, if anything: "is anything on the box?" asks that. */
 static void keep_holding(struct asking_answer *a, int is_number)
 {
@@ -182,11 +202,14 @@ static int answer_whether(struct answer_told *t, struct asking_answer *found, st
 	if (!found->count)
 		return 0;
 	size_t k = 0;
-	while (k < found->count && is_of(&second, found->things[k]))
+	while (k < found->count && is_of(&second, found->things[k]) &&
+		!is_at_nothing(&second, found->things[k]))
 		k++;
 	t->is_yes = k == found->count;
 	*found->reason = 0;
-	if (!t->is_yes && found->count == 1 && !second.count)
+	if (!t->is_yes && second.is_anchor_unknown)
+		snprintf(found->reason, sizeof found->reason, "%s", unknown_place);
+	else if (!t->is_yes && found->count == 1 && !second.count)
 		memcpy(found->reason, second.reason, sizeof found->reason);
 	else if (!t->is_yes && (found->count > 1 || second.count))
 		snprintf(found->reason, sizeof found->reason,
@@ -221,12 +244,7 @@ static int answer_set(struct answer_told *t, struct asking_answer *found, struct
 
 	if (asking_ask(a, t->asked.text[0], 0, found, to, e))
 		return -1;
-	found->is_guess |= a->options->is_always && found->is_anchor_unknown && !found->is_by_purpose;
-	if (found->count && found->is_anchor_unknown && !found->is_by_purpose && !a->options->is_always &&
-		found->holds[found->things[0]] < is_said) {
-		snprintf(found->reason, sizeof found->reason, "nothing here is known as what it names");
-		found->count = 0;
-	}
+	drop_at_nothing(t, found);
 	if (found->count != 1 || found->is_anchor_unknown ||
 		found->probability[found->things[0]] >= (is_side ? sure : sure_alone))
 		return 0;
@@ -285,7 +303,10 @@ static void check_sure(struct answer_told *t, struct asking_answer *found)
 	static const unsigned of_anchor =
 		1U << QUESTION_SET | 1U << QUESTION_DISTANCE | 1U << QUESTION_COMPARE | 1U << QUESTION_MORE;
 
-	if (of_one >> t->asked.kind & 1 && answering_is_unsure(found))
+	const int is_one = of_one >> t->asked.kind & 1 ||
+			   (t->asked.kind == QUESTION_SET && found->probability[found->things[0]] < sure);
+
+	if (is_one && answering_is_unsure(found))
 		ask_back(t, found, found->things[0], found->runner_up);
 	if (!(of_anchor >> t->asked.kind & 1) || found->unclear[0] == ASKING_NONE)
 		return;
@@ -307,8 +328,10 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 
 	if (find_things(t, found, a, to, e))
 		return -1;
-	if (t->asked.kind == QUESTION_THERE || kind == QUESTION_NUMBER)
+	if (t->asked.kind == QUESTION_THERE || kind == QUESTION_NUMBER) {
 		keep_holding(found, kind == QUESTION_NUMBER);
+		drop_at_nothing(t, found);
+	}
 	t->is_yes |= t->asked.kind == QUESTION_THERE && found->count && (int)found->count >= t->asked.least;
 	if (kind == QUESTION_NUMBER)
 		say_number(t, found->count);

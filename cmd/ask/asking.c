@@ -163,8 +163,16 @@ static int is_definite(const struct parse *p, const struct parse_phrase *f)
 	return parse_word_is(p, w - 1, articles);
 }
 
-/* What is known of the anchor of a clause; and the two likeliest things that it may be, "the box" among
- * boxes, where one is as likely as the other. */
+/* Whether a phrase that a place is told by is nothing that is known here. */
+static int is_unknown(const struct meaning *m, int phrase)
+{
+	if (m->sentence->parse->phrases[phrase].viewer || meaning_is_scene(m, phrase))
+		return 0;
+	return fmin(m->known[phrase], largest(there_of(m, phrase), m->arrangement->n)) < known_anchor;
+}
+
+/* What is known of the anchors of a clause; and the two likeliest things that the only one may be, "the box"
+ * among boxes, where one is as likely as the other. */
 static void find_anchor(const struct meaning *m, struct asking_answer *answer)
 {
 	const struct parse *p = m->sentence->parse;
@@ -173,12 +181,10 @@ static void find_anchor(const struct meaning *m, struct asking_answer *answer)
 	for (int k = 0; k < clauses->n; k++) {
 		const struct parse_clause *c = &p->clauses[clauses->item[k]];
 		const int i = c->anchors.n == 1 ? c->anchors.item[0] : -1;
-		if (i < 0 || p->phrases[i].viewer || meaning_is_scene(m, i))
-			continue;
-		const double there = largest(there_of(m, i), m->arrangement->n);
-		answer->is_anchor_unknown |= fmin(m->known[i], there) < known_anchor;
-		if (p->phrases[i].count != PARSE_ONE || !is_definite(p, &p->phrases[i]) ||
-			answer->is_anchor_unknown)
+		for (int j = 0; j < c->anchors.n && c->relation < PARSE_WITH && !c->negated; j++)
+			answer->is_anchor_unknown |= is_unknown(m, c->anchors.item[j]);
+		if (i < 0 || p->phrases[i].viewer || meaning_is_scene(m, i) || is_unknown(m, i) ||
+			p->phrases[i].count != PARSE_ONE || !is_definite(p, &p->phrases[i]))
 			continue;
 		const double *fit = fit_of(m, i);
 		const size_t best = best_of(fit, m->arrangement->n);
@@ -221,11 +227,7 @@ int asking_answer_make(struct asking_answer *answer, size_t objects, struct err 
 
 void asking_answer_free(struct asking_answer *answer)
 {
-	free(answer->things);
-	free(answer->probability);
-	free(answer->centres);
-	free(answer->holds);
-	free(answer->explained);
+	mem_free_all(answer->things, answer->probability, answer->centres, answer->holds, answer->explained);
 	*answer = (struct asking_answer){0};
 }
 

@@ -1,58 +1,11 @@
 /* Words that point back to what was spoken of last. They are put right in the question's text, so that
  * everything else reads it as if it had been said in full. */
-#include "cmd/ask/reply.h"
+#include "cmd/ask/talk_words.h"
 
 #include "lang/closed.h"
-#include "lang/colours.h"
 #include "lang/tokens.h"
 
 #include <string.h>
-
-/* Whether a thing is named in the question before word i, which then points to that: "the plate with nothing
- * on it", but not "is the plate larger than it?". Its words are *of, up to a pause, where there is one
- * between. */
-static int is_named_before(const struct tokens *t, int i, struct parse_span *of)
-{
-	static const unsigned clauses = 1U << CLOSED_WITH | 1U << CLOSED_HAVE | 1U << CLOSED_RELATIVE |
-					1U << CLOSED_NEGATION | 1U << CLOSED_CONJUNCTION;
-	int is_definite = 0, is = 0, begin = 0, is_clause = 0;
-
-	*of = (struct parse_span){0};
-	for (int k = 0; k < i; k++) {
-		const int class = tokens_class(t, k);
-		is_clause |= is && class >= 0 && clauses >> class & 1;
-		if (is && t->word[k].before && !of->end)
-			*of = (struct parse_span){t->word[begin].span.begin, t->word[k - 1].span.end};
-		if (!is && class == CLOSED_DETERMINER) {
-			is_definite = 1;
-			begin = k;
-		} else if ((class < 0 || tokens_is(t, k, "one")) && is_definite) {
-			is = 1;
-		} else if (class >= 0 && class != CLOSED_SIZE && class != CLOSED_ATTRIBUTE &&
-			   class != CLOSED_ORDINAL) {
-			is_definite = 0;
-		}
-	}
-	if (is && t->word[i].before && !of->end)
-		*of = (struct parse_span){t->word[begin].span.begin, t->word[i - 1].span.end};
-	return is && (is_clause || of->end);
-}
-
-/* The words of a name but for numbers; with is_noun the last of them alone. */
-static void find_words(const char *name, int is_noun, char words[CALLING_TEXT])
-{
-	struct tokens t;
-	size_t n = 0;
-
-	*words = 0;
-	tokens_take(&t, name, NULL, NULL, 0);
-	for (int i = 0; i < t.n && n < CALLING_TEXT; i++)
-		if (strspn(t.word[i].text, "0123456789") < strlen(t.word[i].text)) {
-			n = is_noun ? 0 : n;
-			n += (size_t)snprintf(
-				words + n, CALLING_TEXT - n, "%s%s", n ? " " : "", t.word[i].lemma);
-		}
-}
 
 /* What several things are called, one of which has this name: "the bigger one" is one of those. "": no others
  * are. */
@@ -62,154 +15,15 @@ static void find_shared(char *const *names, size_t objects, size_t thing, char w
 
 	for (int is_noun = 0; is_noun < 2; is_noun++) {
 		int n = 0;
-		find_words(names[thing], is_noun, words);
+		talk_name_words(names[thing], is_noun, words);
 		for (size_t o = 0; o < objects; o++) {
-			find_words(names[o], is_noun, other);
+			talk_name_words(names[o], is_noun, other);
 			n += !strcmp(words, other);
 		}
 		if (n > 1)
 			return;
 	}
 	*words = 0;
-}
-
-/* What a word points back to. */
-struct pointed {
-	const char *article, *to, *tail; /* "the ", "mug", "'s"; to is NULL: nothing */
-	int end;			 /* the word behind it */
-};
-
-/* What words of a question may point to; "" where there is no such thing. */
-struct referents {
-	char name[CALLING_TEXT], other[CALLING_TEXT], things[CALLING_TEXT];
-	char noun[CALLING_TEXT], kind[CALLING_TEXT]; /* of "the left one", and of "the red one" */
-};
-
-static struct pointed point(const char *article, const char *to, const char *tail, int end)
-{
-	return (struct pointed){article, to, tail, end};
-}
-
-/* "the other one", "that one", "the two": how many words from word i on are the whole of that. */
-static int other_length(const struct tokens *t, int i)
-{
-	const int from = tokens_is(t, i, "the") ? i + 1 : i;
-
-	if (!tokens_is(t, from, "other") && (from > i || !tokens_is(t, from, "another")))
-		return 0;
-	const int class = tokens_class(t, from + 1);
-	const int is_one = tokens_is(t, from + 1, "one") || tokens_is(t, from + 1, "thing");
-	return is_one || (class != CLOSED_GENERIC && class >= 0) || from + 1 == t->n ? from + 1 + is_one - i
-										     : 0;
-}
-
-static int two_length(const struct tokens *t, int i)
-{
-	static const char those[] = "the|those|these";
-	static const char them[] = "them";
-	const int is_two = tokens_is(t, i, those) && tokens_is(t, i + 1, "two");
-
-	if (!is_two || (i + 2 < t->n && tokens_class(t, i + 2) < 0))
-		return 0;
-	return tokens_is(t, i + 2, "of") && tokens_is(t, i + 3, them) ? 4 : 2;
-}
-
-/* Whether the word before "one" says a look, by which another thing of the kind is meant. */
-static int says_look(const struct tokens *t, int i)
-{
-	return tokens_class(t, i - 1) == CLOSED_ATTRIBUTE || colour_word(t->word[i - 1].text) >= 0;
-}
-
-/* ", isn't it?": nothing but such words since a pause. */
-static int is_tag(const struct tokens *t, int i)
-{
-	static const unsigned words = 1U << CLOSED_BE | 1U << CLOSED_NEGATION | 1U << CLOSED_AUXILIARY;
-	int k = i;
-
-	while (k > 0 && !t->word[k].before && tokens_class(t, k - 1) >= 0 &&
-		words >> tokens_class(t, k - 1) & 1)
-		k--;
-	return i + 1 == t->n && k < i && t->word[k].before;
-}
-
-static const char *plural_end(const char *noun)
-{
-	const size_t n = strlen(noun);
-
-	return n && strchr("sxh", noun[n - 1]) ? "es" : "s";
-}
-
-/* topic is where a thing is written that the question begins with: "the mug, how tall is it?" */
-static struct pointed points_to(const struct tokens *t, int i, const struct referents *r,
-	char topic[CALLING_TEXT], const char *question)
-{
-	static const char it[] = "it|him|her|he|she";
-	static const char that[] = "that|this";
-	static const char those[] = "they|them|those|these";
-	struct parse_span of;
-	const int is_one = tokens_is(t, i + 1, "one") || tokens_is(t, i + 1, "thing");
-	const int class = tokens_class(t, i + 1), before = i ? tokens_class(t, i - 1) : CLOSED_CONJUNCTION;
-	/* behind a noun, as of "everything that is red", a clause begins */
-	const int may_stand = before == CLOSED_CONJUNCTION || before == CLOSED_BE ||
-			      before == CLOSED_PREPOSITION || before == CLOSED_PLACE;
-	const int is_end = i + 1 == t->n || tokens_is(t, i - 1, "of") ||
-			   (may_stand && (class == CLOSED_BE || class == CLOSED_CONJUNCTION)) ||
-			   (before == CLOSED_BE && (class == CLOSED_PREPOSITION || class == CLOSED_PLACE));
-
-	if (other_length(t, i) && *r->other)
-		return point("the ", r->other, "", i + other_length(t, i));
-	if (two_length(t, i) && *r->things)
-		return point("", r->things, "", i + two_length(t, i));
-	if (is_named_before(t, i, &of)) {
-		snprintf(topic, CALLING_TEXT, "%.*s", of.end - of.begin, question + of.begin);
-		const int is_topic =
-			!is_tag(t, i) && (tokens_is(t, i, it) || (tokens_is(t, i, that) && is_end));
-		return (struct pointed){"", is_topic && of.end ? topic : NULL, "", i + 1};
-	}
-	if (tokens_is(t, i, "its"))
-		return point("the ", r->name, "'s", i + 1);
-	if (tokens_is(t, i, it))
-		return point("the ", r->name, "", i + 1);
-	if (tokens_is(t, i, that) && (is_one || is_end))
-		return point("the ", r->name, "", i + 1 + is_one);
-	if (*r->things && tokens_is(t, i, those) &&
-		(is_end || class == CLOSED_NUMBER || tokens_is(t, i, "they")))
-		return point("", r->things, "", i + 1 + (class == CLOSED_NUMBER));
-	const int is_noun = i && tokens_is(t, i, "one|ones") && !tokens_is(t, i + 1, "of");
-	const char *noun = !is_noun ? "" : says_look(t, i) ? r->kind : r->noun;
-	return (struct pointed){
-		"", *noun ? noun : NULL, tokens_is(t, i, "ones") ? plural_end(noun) : "", i + 1};
-}
-
-/* What words pointed to, as bits. */
-enum { TO_THINGS = 1, TO_NOUN = 2 };
-
-/* The question with what its words point back to in their place. Returns what they point to. */
-static unsigned put_pointed(const struct referents *r, const char *question, char understood[QUESTION_TEXT])
-{
-	char topic[CALLING_TEXT];
-	struct question_asked q;
-	struct tokens t;
-	size_t n = 0;
-	unsigned to = 0;
-	int from = 0;
-
-	*understood = 0;
-	question_read(&q, question, 0);
-	tokens_take(&t, question, NULL, NULL, 0);
-	for (int i = 0, end; i < t.n && n < QUESTION_TEXT; i = end) {
-		const struct pointed p = points_to(&t, i, r, topic, question);
-		end = p.end;
-		if (!p.to || !*p.to || (p.to == topic && q.kind == QUESTION_WHICH))
-			continue;
-		to |= p.to == r->things ? TO_THINGS : p.to == r->noun || p.to == r->kind ? TO_NOUN : 0;
-		n += (size_t)snprintf(understood + n, QUESTION_TEXT - n, "%.*s%s%s%s",
-			t.word[i].span.begin - from, question + from, p.article, p.to, p.tail);
-		from = t.word[end - 1].span.end;
-	}
-	if (n < QUESTION_TEXT)
-		snprintf(understood + n, QUESTION_TEXT - n, "%s", question + from);
-	return to;
 }
 
 /* What "one" is one of. */
@@ -228,28 +42,15 @@ static const struct meaning_set *put_set(const struct talk *talk, const struct m
 	const char *noun = *those->noun ? those->noun : "thing";
 	struct question_asked q;
 
-	unsigned to = put_pointed(r, question, understood);
+	unsigned to = talk_put_pointed(r, question, understood);
 	question_read(&q, understood, 0);
 	if (those->n && (!*r->things || !(of_two >> q.kind & 1))) {
-		snprintf(r->things, sizeof r->things, "the %s%s", noun, plural_end(noun));
-		to = put_pointed(r, question, understood);
+		snprintf(r->things, sizeof r->things, "the %s%s", noun, talk_plural_end(noun));
+		to = talk_put_pointed(r, question, understood);
 		if (to & TO_THINGS)
 			return those;
 	}
 	return of_one(talk)->n && to & TO_NOUN ? of_one(talk) : NULL;
-}
-
-int talk_points(const char *question)
-{
-	const struct referents nothing = {0};
-	char topic[CALLING_TEXT];
-	struct tokens t;
-
-	tokens_take(&t, question, NULL, NULL, 0);
-	for (int i = 0; i < t.n; i++)
-		if (points_to(&t, i, &nothing, topic, question).to)
-			return 1;
-	return 0;
 }
 
 /* "no, the other one", "not that one": the words up to a pause that ask for another thing than the last; 0
@@ -390,7 +191,7 @@ static void find_referents(const struct talk *talk, char *const *names, size_t o
 	find_name(names, objects, talk->thing, r->name);
 	find_name(names, objects, talk->other, r->other);
 	find_shared(names, objects, talk->thing, r->noun);
-	find_words(names[talk->thing], 1, r->kind);
+	talk_name_words(names[talk->thing], 1, r->kind);
 	snprintf(about, sizeof about, "%.*s", last->about.end - last->about.begin,
 		talk->question + last->about.begin);
 	question_noun(about, noun);
@@ -398,7 +199,7 @@ static void find_referents(const struct talk *talk, char *const *names, size_t o
 	if (of->n)
 		snprintf(noun, sizeof noun, "%s", *of->noun ? of->noun : "thing");
 	for (size_t o = 0; o < objects && *noun; o++) {
-		find_words(names[o], 1, other);
+		talk_name_words(names[o], 1, other);
 		n += !strcmp(other, noun);
 	}
 	if (*noun)
@@ -417,7 +218,7 @@ const struct meaning_set *talk_understand(const struct talk *talk, char *const *
 
 	tokens_take(&t, question, NULL, NULL, 0);
 	if (!talk || !*talk->question || talk->thing == ASKING_NONE) {
-		put_pointed(&r, question, understood);
+		talk_put_pointed(&r, question, understood);
 		return NULL;
 	}
 	question_read(&last, talk->question, 0);
@@ -447,10 +248,10 @@ static size_t find_other(const struct talk *talk, const struct answer_told *t, s
 			n++;
 		}
 	for (int is_noun = 0; is_noun < 2 && n != 1; is_noun++) {
-		find_words(names[thing], is_noun, own);
+		talk_name_words(names[thing], is_noun, own);
 		n = 0;
 		for (size_t o = 0; o < objects; o++) {
-			find_words(names[o], is_noun, words);
+			talk_name_words(names[o], is_noun, words);
 			if (o == thing || strcmp(own, words) != 0)
 				continue;
 			other = o;
@@ -467,9 +268,9 @@ static void find_noun(struct meaning_set *set, const struct answer_told *t)
 	const struct parse_span about = t->asked.about;
 	char *const *names = t->asking->model.lifted.names, noun[CALLING_TEXT], other[CALLING_TEXT];
 
-	find_words(names[a->things[0]], 1, noun);
+	talk_name_words(names[a->things[0]], 1, noun);
 	for (size_t k = 1; k < a->count && *noun; k++) {
-		find_words(names[a->things[k]], 1, other);
+		talk_name_words(names[a->things[k]], 1, other);
 		*noun = strcmp(noun, other) ? 0 : *noun;
 	}
 	snprintf(set->noun, sizeof set->noun, "%s", noun);

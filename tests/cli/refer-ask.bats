@@ -151,6 +151,16 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 	says 1 "none: nothing here is known as 'sofas'" ask run --always "how many sofas are there?"
 }
 
+@test "nothing is at what is not here, however it is asked" {
+	a=$(sed -n 1p things)
+	for question in "is the $a on the sofa?" "what is on the sofa?" "how many things are on the sofa?" "is anything behind the sofa?" "which things are left of the sofa?"; do
+		run ask run "$question"
+		[ "$status" = 1 ]
+		[[ $output == *"nothing here is known as what it names" ]]
+	done
+	[ "$(kind "is the $a not on the sofa?" .yes)" = true ]
+}
+
 @test "whether all are, and whether one is" {
 	a=$(sed -n 1p things)
 	[ "$(kind "are all the things ${a%% *}?" '[.yes, (.things | length)] | join(" ")')" = "false 3" ]

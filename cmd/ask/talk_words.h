@@ -1,0 +1,22 @@
+/* What words of a question point back to: "it", "the other one", "those", "the left one". */
+#pragma once
+
+#include "cmd/ask/reply.h"
+
+/* What words of a question may point to; "" where there is no such thing. */
+struct referents {
+	char name[CALLING_TEXT], other[CALLING_TEXT], things[CALLING_TEXT];
+	char noun[CALLING_TEXT], kind[CALLING_TEXT]; /* of "the left one", and of "the red one" */
+};
+
+/* What words pointed to, as bits. */
+enum { TO_THINGS = 1, TO_NOUN = 2 };
+
+/* The question with what its words point back to in their place. Returns what they point to. */
+unsigned talk_put_pointed(const struct referents *r, const char *question, char understood[QUESTION_TEXT]);
+
+/* The words of a name but for numbers; with is_noun the last of them alone. */
+void talk_name_words(const char *name, int is_noun, char words[CALLING_TEXT]);
+
+/* "s" or "es". */
+const char *talk_plural_end(const char *noun);
