@@ -119,9 +119,11 @@ static struct pointed points_to(const struct tokens *t, int i, const struct refe
 	static const char that[] = "that|this";
 	static const char those[] = "they|them|those|these";
 	struct parse_span of;
-	const int is_one = tokens_is(t, i + 1, "one") || tokens_is(t, i + 1, "thing");
 	const int class = tokens_class(t, i + 1), before = i ? tokens_class(t, i - 1) : CLOSED_CONJUNCTION;
-	/* behind a noun, as of "everything that is red", a clause begins */
+	/* behind a noun, as of "everything that is red" and "that one can lift", a clause begins */
+	const int is_who =
+		(before < 0 || before == CLOSED_GENERIC) && tokens_class(t, i + 2) == CLOSED_AUXILIARY;
+	const int is_one = (tokens_is(t, i + 1, "one") || tokens_is(t, i + 1, "thing")) && !is_who;
 	const int may_stand = before == CLOSED_CONJUNCTION || before == CLOSED_BE ||
 			      before == CLOSED_PREPOSITION || before == CLOSED_PLACE;
 	const int is_end = i + 1 == t->n || tokens_is(t, i - 1, "of") ||

@@ -83,13 +83,16 @@ static int first_word(const struct parse *p)
 	return i;
 }
 
-/* "where the flowers go", "what rings", but not "where is the vase" or "what stands by the wall". */
+/* "where the flowers go", "what rings", but not "where is the vase", "what stands by the wall" or "how many
+ * stand by it". */
 static int asks_for(const struct parse *p)
 {
 	const int i = first_word(p), next = closed_class_of(p, i + 1);
 	const int asks_who = next == CLOSED_AUXILIARY &&
 			     (closed_class_of(p, i + 2) == CLOSED_PRONOUN || after_doer(p, i + 2) > i + 2);
 
+	if (parse_word_is(p, i, "how") && next != CLOSED_AUXILIARY && !parse_word_is(p, i + 1, "to"))
+		return 0;
 	return parse_word_is(p, i, "what|where|how") && !asks_who && next != CLOSED_BE &&
 	       next != CLOSED_POSE && next != CLOSED_PLACE && next != CLOSED_HAVE && next != -1;
 }

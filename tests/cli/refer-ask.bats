@@ -177,6 +177,7 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 	printf '%s\n' "where is the $a?" "and the one next to that?" "everything that is red" "how many of those are red?" | ask --json run >said || [ $? = 1 ]
 	jq -se --arg a "$a" '[.[1].understood == "the one next to the \($a)", .[2].understood == null] | all' said
 	[ "$(kind "tell me what you can see" .kind)" = list ]
+	[[ $(ask run "are there any things that one can eat?") != *"does not say"* ]]
 }
 
 @test "several things are a line each" {

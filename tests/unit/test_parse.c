@@ -422,7 +422,8 @@ static void purposes_are_told(void)
 		"the thing for soup"};
 	static const char *const no[] = {"the saw", "a saw left of the plank", "where is the saw?",
 		"could you lift it", "what stands by the wall", "I mean the saw", "where did I leave it",
-		"the saw with a plank on it", "the plank is under it", "it has a plank on it", "", "it"};
+		"the saw with a plank on it", "the plank is under it", "it has a plank on it", "", "it",
+		"how many planks stand by it"};
 	const struct parser parser = default_parser();
 	struct parse p = {0};
 	struct err e;
