@@ -69,17 +69,16 @@ report() {
 		cp given/$cell/both/test.csv given/$cell/both/train.csv
 	done
 	echo 'relation,left,9,0.6' >given/b-2/both/test.csv
-	run report sentences both
+	run report hard both
 	[ "$status" = 0 ]
 	grep -qF '| left | 12 | 50.0 | 20.0 |' <<<"$output" # (3 of 0.2 and 9 of 0.6) / 12
 	grep -qF '| <0.15 | 9 | 10.0 | 10.0 |' <<<"$output"
 }
 
 @test "the pipeline makes its tables, keeps them, and does nothing the second time" {
-	ablation -j2 modules masks sentences >first.log 2>&1
+	ablation -j2 modules masks >first.log 2>&1
 	grep -qE '^\| \+ second stage \| 36.9 / 25.2( \| [0-9.]+){4} \|$' first.log
 	grep -qE '^\| top-1 \| below( \| [0-9.]+){5} \|$' out/quick/masks.md
-	grep -q '^### By visible share' out/quick/sentences.md
 	run ablation scores RUNS="none pcmi gtcl both two top1 iou first"
 	[ "$status" = 0 ]
 	not grep -qE 'refer-train|refer-render|gs-weigh|miou-score' <<<"$output"
