@@ -21,9 +21,6 @@ static const struct cli_option table[] = {
 	{"prune", 0, CLI_REAL, &options.prune, "R",
 		"Gaussians of less reliability count as unseen (default 0)", 0, 1},
 	CLI_ONE_OF("precision", &options.is_single, "f16|f32", "of the features written (default f16)"),
-	{"components", 0, CLI_INT, &options.components, "K",
-		"tell features by their first K principal components: a smaller file, with an error that it states",
-		1, COMPONENTS_MAX_CHANNELS},
 	{"memory", 0, CLI_INT, &options.memory, "MIB",
 		"memory for sums of features; with less, all views are read several times (default 1024)", 1,
 		MOST_MEMORY},
@@ -62,9 +59,6 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 		return -1;
 	cli_note(c, 1, "%zu of %zu Gaussians are seen, and %zu more are not reliable", l.seen,
 		l.scene.splats.n, l.pruned);
-	if (options.components)
-		cli_note(c, 1, "%lld components of %zu channels: features are off by %.3g %% of their length",
-			options.components, l.maps.channels, 100 * l.components.error);
 	return feature_lifting_write(&l, c->output, e);
 }
 

@@ -15,7 +15,6 @@
 # SEEDS       of the scenes; default 21
 # SYNTH       more options for gs-synth; default --size 246x182 --gaussians 15000
 # PRUNE       reliability under which a Gaussian has no feature; default 0.5
-# COMPONENTS  principal components that features are told by; default: none, features are as they are
 # TRAIN       options of refer-train; default --iterations 2000 and rates four times the paper's; empty: without this row
 # BERT        folder of the language encoder; default: where `make encoder` puts it
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
@@ -30,9 +29,9 @@ SEEDS ?= 21
 SYNTH ?= --size 246x182 --gaussians 15000
 PRUNE ?= 0.5
 TRAIN ?= --iterations 2000 --feature-rate 0.01 --mlp-rate 0.0004
-$(call check,,OUT BIN BERT,SCENES SEEDS SYNTH PRUNE COMPONENTS TRAIN)
-$(call check_plain,SCENES SEEDS SYNTH PRUNE COMPONENTS TRAIN)
-lift_options := --prune $(PRUNE) $(if $(COMPONENTS),--components $(COMPONENTS))
+$(call check,,OUT BIN BERT,SCENES SEEDS SYNTH PRUNE TRAIN)
+$(call check_plain,SCENES SEEDS SYNTH PRUNE TRAIN)
+lift_options := --prune $(PRUNE)
 
 cells := $(foreach s,$(SCENES),$(foreach n,$(SEEDS),$(OUT)/$(s)-$(n)))
 kinds := truth detector

@@ -134,8 +134,6 @@ int check_features(struct check *c, const char *path, struct err *e)
 	check_add(c, "gaussians", (long long)f.gaussians);
 	if (!f.labels)
 		check_add(c, "channels", (long long)f.channels);
-	if (f.components)
-		check_add(c, "components", (long long)f.components);
 	size_t seen = 0, labels = 0;
 	for (size_t i = 0; i < f.gaussians; i++) {
 		seen += f.weight[i] > 0;

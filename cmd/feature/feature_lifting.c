@@ -169,40 +169,13 @@ static struct features as_features(const struct feature_lifting *l)
 		.scene = l->scene.fingerprint};
 }
 
-/* The features' principal components, if they are wanted. */
-static int find_components(struct feature_lifting *l, struct err *e)
-{
-	const struct features f = as_features(l);
-
-	return l->options->components
-		       ? feature_components_make(&l->components, &f, (size_t)l->options->components, e)
-		       : 0;
-}
-
-/* Before anything is lifted. */
-static int check_components(const struct feature_lifting *l, struct err *e)
-{
-	const size_t channels = l->maps.channels;
-	const char *of = l->options->maps.folder ? l->options->maps.folder : l->options->maps.masks;
-
-	if (!l->options->components)
-		return 0;
-	if (!channels)
-		return err_set(e, ERR_FORMAT, "%s: labels have no components", file_name(of));
-	if ((size_t)l->options->components > channels || channels > COMPONENTS_MAX_CHANNELS)
-		return err_set(e, ERR_FORMAT,
-			"%s: %zu channels, not %lld to %d, which have so many components", file_name(of),
-			channels, l->options->components, COMPONENTS_MAX_CHANNELS);
-	return 0;
-}
-
 int feature_lifting_make(struct feature_lifting *l, const struct feature_lifting_options *options,
 	const struct report *to, struct err *e)
 {
 	l->options = options;
 	l->to = to;
 	if (scene_read(&l->scene, options->scene, e) ||
-		feature_maps_find(&l->maps, &options->maps, &l->scene, to, e) || check_components(l, e))
+		feature_maps_find(&l->maps, &options->maps, &l->scene, to, e))
 		return -1;
 	l->reliability = mem_alloc(l->scene.splats.n, sizeof *l->reliability, "Gaussians", e);
 	l->weight = mem_alloc(l->scene.splats.n, sizeof *l->weight, "Gaussians", e);
@@ -213,14 +186,13 @@ int feature_lifting_make(struct feature_lifting *l, const struct feature_lifting
 	if (bad)
 		return -1;
 	prune(l);
-	return find_components(l, e);
+	return 0;
 }
 
 int feature_lifting_write(const struct feature_lifting *l, const char *path, struct err *e)
 {
 	const struct feature_lifting_options *o = l->options;
-	const struct components *of = &l->components.of;
-	struct features f = as_features(l);
+	const struct features f = as_features(l);
 	char options[128];
 	int used = snprintf(options, sizeof options, "--prune %.15g", o->prune);
 
@@ -230,15 +202,6 @@ int feature_lifting_write(const struct feature_lifting *l, const char *path, str
 	if (l->maps.channels)
 		snprintf(options + used, sizeof options - (size_t)used, " --precision %s --uncovered %s",
 			o->is_single ? "f32" : "f16", o->maps.is_zero ? "zero" : "skip");
-	if (l->components.values) {
-		f.values = l->components.values;
-		f.components = of->count;
-		f.mean = of->mean;
-		f.basis = of->basis;
-		f.error = l->components.error;
-		used = (int)strlen(options);
-		snprintf(options + used, sizeof options - (size_t)used, " --components %zu", of->count);
-	}
 	return features_write(&f, path, options, e);
 }
 
@@ -251,6 +214,5 @@ void feature_lifting_free(struct feature_lifting *l)
 	source_weights_free(&l->weights);
 	lift_features_free(&l->features);
 	lift_labels_free(&l->votes);
-	feature_components_free(&l->components);
 	mem_free_all(l->table, l->factor);
 }

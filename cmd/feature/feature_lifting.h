@@ -9,27 +9,11 @@
 #include "formats/scene/features.h"
 #include "formats/scene/scene.h"
 #include "formats/scene/text.h"
-#include "lift/components.h"
 #include "lift/lift_features.h"
 #include "lift/lift_labels.h"
 #include "mask/mask_index.h"
 
 #include <stdint.h>
-
-/* Lifted features told by their first principal components (formats/scene/features.md). */
-
-struct feature_components {
-	struct components of;
-	void *values; /* (N,K) as the features that they stand for: half floats or floats; owned */
-	double error; /* root of the sum of squared differences over that of squares, over the seen Gaussians
-		       */
-};
-
-/* The components of seen Gaussians' features, of a sample of them where there are many. Returns 0, or -1 with
- * *e set; feature_components_free after either. */
-int feature_components_make(
-	struct feature_components *c, const struct features *f, size_t count, struct err *e);
-void feature_components_free(struct feature_components *c);
 
 /* What 2D models say of a scene's training views: maps of features, segments with a feature each, labels, or
  * masks with the vector of a text each; and which pixel has which. formats/scene/features.md. */
@@ -104,10 +88,9 @@ int feature_tables_open(const struct feature_maps *m, size_t view, int height, i
 struct feature_lifting_options {
 	const char *scene, *weights;
 	struct feature_maps_options maps;
-	int is_single;	      /* float32, else half floats */
-	long long memory;     /* MiB that sums of features may take */
-	double prune;	      /* Gaussians of less reliability become unseen */
-	long long components; /* that features are told by; 0: they are written as they are */
+	int is_single;	  /* float32, else half floats */
+	long long memory; /* MiB that sums of features may take */
+	double prune;	  /* Gaussians of less reliability become unseen */
 };
 
 struct feature_lifting {
@@ -119,7 +102,6 @@ struct feature_lifting {
 	int32_t *labels;
 	float *reliability, *weight;
 	size_t seen, pruned; /* Gaussians */
-	struct feature_components components;
 	/* While it goes on. */
 	const struct report *to;
 	struct feature_sources sources;

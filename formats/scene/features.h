@@ -9,19 +9,15 @@
 #include <stdint.h>
 
 /* Memory is taken for as many labels as the largest one says. */
-enum { FEATURES_MAX_CHANNELS = 65536, FEATURES_MAX_COMPONENTS = 4096, FEATURES_MAX_LABEL = (1 << 24) - 1 };
+enum { FEATURES_MAX_CHANNELS = 65536, FEATURES_MAX_LABEL = (1 << 24) - 1 };
 
 struct features {
 	size_t gaussians, channels; /* channels: 0 where there are labels in place of features */
-	const void *values;	    /* (N,C), or of components (N,K); float32 or, with is_half, half floats */
+	const void *values;	    /* (N,C) float32 or, with is_half, half floats */
 	int is_half;
-	/* Where features are told by components: a seen Gaussian's is mean + its K numbers times basis. */
-	size_t components;	   /* K; 0: they are not */
-	const float *mean, *basis; /* (C); (K,C) row-major */
-	double error;		   /* what that changed, as a share of the features; written and not read */
-	const int32_t *labels;	   /* (N), or NULL; -1: unseen */
-	const float *reliability;  /* (N) in [0,1] */
-	const float *weight;	   /* (N) sum of blend weights; 0: unseen */
+	const int32_t *labels;	  /* (N), or NULL; -1: unseen */
+	const float *reliability; /* (N) in [0,1] */
+	const float *weight;	  /* (N) sum of blend weights; 0: unseen */
 	struct fingerprint scene;
 	struct safetensors file; /* of one that was read: keeps the map alive */
 };

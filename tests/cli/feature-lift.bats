@@ -348,48 +348,6 @@ Try 'feature-lift --help'." lift -o all.npz all.npz
 	"$python" "$peer" time "$made/weights" maps out.npy | jq -e '.seconds >= 0 and .views > 1'
 }
 
-@test "--components: fewer numbers, and what they lose" {
-	# ten different features of 24 channels, in cells of their own
-	for view in "${views[@]}"; do
-		npy "maps/$view.npy" '<f4' '2, 5, 24' "$(awk 'BEGIN { srand(3); for (i = 0; i < 240; i++) printf "%04x%02x3f", 65536 * rand(), 128 * rand() }')"
-	done
-	lift --precision f32 -o plain maps
-	lift --precision f32 --components 24 -v -o all maps 2>said
-	grep -q '^feature-lift: 24 components of 24 channels: features are off by [0-9.]*e-0[5-9] % of their length$' said
-	[[ $("$BIN/gs-check" all) == *", 24 channels, 24 components, "* ]]
-	[ "$(tensor all weight f4)" = "$(tensor plain weight f4)" ]
-	[ "$(tensor all reliability f4)" = "$(tensor plain reliability f4)" ]
-	# mean + numbers times basis
-	values() { { tensor "$1" "$2" f4; echo; } | tr ' ' '\n'; }
-	{ values all mean; values all basis; values all features; values all weight; values plain features; } |
-		awk '{ x[NR] = $1 } END {
-			n = (NR - 24 - 576) / 49
-			for (i = 0; i < n; i++) for (c = 0; c < 24; c++) {
-				sum = x[1 + c]
-				for (k = 0; k < 24; k++) sum += x[600 + 24 * i + k + 1] * x[24 + 24 * k + c + 1]
-				seen = x[600 + 24 * n + i + 1] > 0
-				off = seen * sum - x[600 + 25 * n + 24 * i + c + 1]
-				if (off > 1e-5 || off < -1e-5) bad++
-				if (seen) count++
-			}
-			exit bad > 0 || count < 24 * 100 }'
-	# fewer are smaller, with a larger error, which the file has too
-	for k in 1 3 9; do
-		lift --components $k -v -o few$k maps 2>said
-		sed -n 's/.* off by \([^ ]*\) % of their length$/\1/p' said
-		awk -v a="$(meta few$k error)" -v b="$(sed -n 's/.* off by \([^ ]*\) % of their length$/\1/p' said)" 'BEGIN { exit !(a > 0 && 100 * a - b < 0.01 * b && b - 100 * a < 0.01 * b) }'
-		[ "$(meta few$k version)" = 2 ]
-	done >errors
-	sort -rgc errors
-	[ "$(wc -l <errors)" = 3 ]
-	[ "$(meta plain version)" = 1 ]
-	[ "$(wc -c <few3)" -lt $(($(wc -c <plain) / 4)) ]
-	for n in 1 7; do lift --components 3 --threads $n maps | cmp - few3; done
-	# nothing is queried otherwise
-	refuses 3 "maps: 24 channels, not 25 to 4096, which have so many components" --components 25 maps
-	refuses 3 "masks.jsonl: labels have no components" --components 2 --masks masks.jsonl
-}
-
 @test "options that do not go together, and outputs that are inputs" {
 	halves
 	local try="

@@ -173,17 +173,6 @@ not() { ! "$@"; }
 	refuses 3 "labels.safetensors: has 0 tensors of two dimensions, not 1" --vectors labels.safetensors features.safetensors
 }
 
-@test "features that are told by components select nearly the same" {
-	"$BIN/feature-lift" -q --scene scene --weights "$made/weights" --masks "$made/masks.jsonl" --text names.safetensors --uncovered zero \
-		--prune 0.5 --components 4 -o few
-	for args in "--rule cosine" "--rule relevancy --canonical canonical.safetensors --relative" "--rule hyperplane --positives lifted.safetensors"; do
-		query $args -o whole features.safetensors
-		query $args -o told few
-		[ "$(tensor told index d4 | tr ' ' '\n' | wc -l)" -gt 100 ]
-		awk -v a="$(scores whole)" -v b="$(scores told)" 'BEGIN { exit !(a - b <= 1 && b - a <= 1) }'
-	done
-}
-
 @test "--pixels: masks and peaks of the test views" {
 	query --pixels scene --least 0.5 --sentences test -o pixels.jsonl features.safetensors
 	"$BIN/gs-check" pixels.jsonl

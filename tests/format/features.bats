@@ -11,12 +11,12 @@ setup() {
 # (NAME_type) or its shape (NAME_shape), or a value of the metadata; "none" leaves a tensor out.
 features() {
 	local file=$1 assignment at=0 name header= data= hex meta= value
-	local features=003c0000003800b8 labels=none basis=none mean=none reliability=$f1$fhalf weight=$f1$f0 format=refer.features version=1 gaussians=2
-	local features_type=F16 labels_type=I32 basis_type=F32 mean_type=F32 reliability_type=F32 weight_type=F32
-	local features_shape='[2,2]' labels_shape='[2]' basis_shape='[2,3]' mean_shape='[3]' reliability_shape='[2]' weight_shape='[2]'
+	local features=003c0000003800b8 labels=none reliability=$f1$fhalf weight=$f1$f0 format=refer.features version=1 gaussians=2
+	local features_type=F16 labels_type=I32 reliability_type=F32 weight_type=F32
+	local features_shape='[2,2]' labels_shape='[2]' reliability_shape='[2]' weight_shape='[2]'
 	shift
 	for assignment; do local "${assignment%%=*}=${assignment#*=}"; done
-	for name in labels reliability weight basis mean features; do
+	for name in labels reliability weight features; do
 		hex=${!name}
 		local type=${name}_type shape=${name}_shape
 		[ "$hex" = none ] && continue
@@ -51,22 +51,8 @@ refuses() {
 	says 0 'x: ok: refer.features, f16, 0 gaussians, 2 channels, 0 seen' "$BIN/gs-check" x
 }
 
-@test "components" {
-	local basis=$f1$f0$f0$f0$f0$f1 mean=$fhalf$f0$f1
-	features x version=2 basis=$basis mean=$mean
-	says 0 'x: ok: refer.features, f16, 2 gaussians, 3 channels, 2 components, 1 seen' "$BIN/gs-check" x
-	refuses "tensor 'mean' is missing" version=2 basis=$basis
-	refuses "tensor 'basis': is F32[3,2], expected F32[2,*]" version=2 basis=$basis basis_shape='[3,2]' mean=$mean
-	refuses "tensor 'basis': is U8[2,12], expected F32[2,*]" version=2 basis=$basis basis_type=U8 basis_shape='[2,12]' mean=$mean
-	refuses "tensor 'basis': 1 channels, not 2 to 65536" version=2 basis=$f1$f0 basis_shape='[2,1]' mean=$f1 mean_shape='[1]'
-	refuses "tensor 'mean': is F32[2], expected F32[3]" version=2 basis=$basis mean=$f0$f1 mean_shape='[2]'
-	refuses "tensor 'basis': item 1 is not finite" version=2 basis=$f1$fnan$f0$f0$f0$f1 mean=$mean
-	refuses "tensor 'mean': item 2 is not finite" version=2 basis=$basis mean=$f0$f0$finf
-	refuses "tensor 'features': item 2 is not finite" version=2 basis=$basis mean=$mean features=003c0000007c00b8
-}
-
 @test "version and Gaussians" {
-	refuses 'refer.features version 3 is newer than this program reads (2)' version=3
+	refuses 'refer.features version 2 is newer than this program reads (1)' version=2
 	refuses "metadata 'gaussians' is 'many', not a whole number from 0 to 2147483647" gaussians=many
 	refuses "tensor 'reliability': is F32[2], expected F32[3]" gaussians=3
 }

@@ -52,32 +52,6 @@ static void test_round_trips(void)
 			(double)floats[0]);
 	}
 	features_close(&back);
-	/* Components: the first is mean + 0.5 (1,0,2) - 0.5 (0,1,0), the second is unseen. */
-	const float basis[6] = {1, 0, 2, 0, 1, 0}, mean[3] = {1, 1, -1}, first[6] = {1.5f, 0.5f, 0, 0, 0, 0};
-	float expanded[6];
-	f.values = half;
-	f.is_half = 1;
-	f.channels = 3;
-	f.components = 2;
-	f.basis = basis;
-	f.mean = mean;
-	f.error = 0.25;
-	if (round_trip(&f, &back)) {
-		features_floats(&back, 0, 2, expanded);
-		CHECK(back.components == 2 && !memcmp(expanded, first, sizeof first), "%g %g %g",
-			(double)expanded[0], (double)expanded[1], (double)expanded[2]);
-		const char *error = safetensors_meta(&back.file, "error");
-		CHECK(error && !strcmp(error, "0.25"), "error %s", error ? error : "is missing");
-	}
-	features_close(&back);
-	f.values = single;
-	f.is_half = 0;
-	if (round_trip(&f, &back)) {
-		features_floats(&back, 1, 1, expanded);
-		CHECK(!memcmp(expanded, first + 3, 3 * sizeof *first), "unseen: %g", (double)expanded[0]);
-	}
-	features_close(&back);
-	f.components = 0;
 	f.channels = 0;
 	f.labels = labels;
 	if (round_trip(&f, &back))
