@@ -164,9 +164,9 @@ static int is_at_nothing(const struct asking_answer *a, size_t thing)
 
 static void drop_at_nothing(const struct answer_told *t, struct asking_answer *found)
 {
-	if (!found->count || !is_at_nothing(found, found->things[0]))
+	if (found->count ? !is_at_nothing(found, found->things[0]) : !found->is_anchor_unknown)
 		return;
-	if (t->asked.kind == QUESTION_SET && t->asking->options->is_always) {
+	if (found->count && t->asked.kind == QUESTION_SET && t->asking->options->is_always) {
 		found->is_guess = 1;
 		return;
 	}

@@ -272,8 +272,10 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 		return;
 	}
 	judge_said(m, c, said);
-	/* nothing is beside what is not here: a denial of it is true */
-	const double unknown = c->negated ? 0 : UNKNOWN_RELATION;
+	/* nothing is beside what is not here: a denial of it is true, and of "all that is on the sill"
+	 * nothing is known */
+	const int is_all = f->count != PARSE_ONE && meaning_head_of(p, f) < 0;
+	const double unknown = c->negated || is_all ? 0 : UNKNOWN_RELATION;
 	double *elsewhere = m->scratch + 8 * n;
 	find_elsewhere(m, c, fit, elsewhere);
 	for (size_t o = 0; o < n; o++)
