@@ -6,7 +6,9 @@
 #include "formats/cameras/colmap.h"
 #include "formats/cameras/dataparser.h"
 
-static struct import_options files;
+#include <math.h>
+
+static struct import_options files = {.time = NAN};
 
 static const struct cli_option options[] = {
 	CLI_TEXT("cameras", &files.cameras, "PATH",
@@ -14,6 +16,12 @@ static const struct cli_option options[] = {
 	CLI_TEXT("images", &files.images, "DIR", "folder of the photographs, to be named in the scene"),
 	CLI_TEXT("test-views", &files.test_views, "NAMES",
 		"views kept for testing: NAME,... or every:N (default: the camera file's, else none)"),
+	CLI_TEXT("motion", &files.motion, "FILE.npz",
+		"where the Gaussians of SPLATS are at other times: arrays means or displacements, times, perhaps quats"),
+	CLI_TEXT("times", &files.times, "FILE|T0:T1|Nfps",
+		"the times of frames, of a scene that moves: numbers in a file, evenly, or so many a second (default 0:1)"),
+	{"time", 0, CLI_REAL, &files.time, "T",
+		"the time of all views of a scene that moves, whose cameras say none", 0, 0},
 	CLI_SWITCH("metres", &files.is_metric,
 		"a unit of SPLATS is a metre, as gs-transform --known makes it: answers then say lengths so"),
 	CLI_SWITCH("undistort", &files.undistort,
@@ -38,11 +46,11 @@ static void refuse_overwrite(const struct cli *cli, const char *cameras)
 	const struct cli_file found[] = {
 		{"--cameras", cameras, CLI_READS, file_is_dir(cameras) ? COLMAP_PARTS : NULL}, {0}};
 
-	cli_refuse_overwrite(cli, "SPLATS", "output:" CLI_SCENE_PARTS, found);
+	cli_refuse_overwrite(cli, "SPLATS motion", "output:" CLI_SCENE_PARTS, found);
 }
 
-static void note_splats(
-	const struct cli *cli, const struct scene *s, const struct rows_report *r, const char *splats)
+static void note_splats(const struct cli *cli, const struct scene *s, const struct rows_report *r,
+	const struct import_found *moved, const char *splats)
 {
 	size_t dropped = r->not_finite + r->zero_quat;
 	int degree = 0;
@@ -51,6 +59,9 @@ static void note_splats(
 		degree++;
 	cli_note(cli, 1, "%s: %zu Gaussians, spherical harmonics of degree %d, offset %.17g %.17g %.17g",
 		file_name(splats), s->splats.n, degree, s->offset[0], s->offset[1], s->offset[2]);
+	if (moved->times)
+		cli_note(cli, 1, "%s: moves: %zu times, %zu of %zu Gaussians ever move", file_name(splats),
+			moved->times, moved->moved, s->splats.n);
 	if (s->splats.near != SPLATS_NEAR)
 		cli_note(cli, 1, "%s: views leave out what is within %.3g of the camera", file_name(splats),
 			s->splats.near);
@@ -110,7 +121,7 @@ static int import(const struct cli *cli, char *splats, const struct report *to, 
 	refuse_overwrite(cli, cameras);
 	const int bad = import_scene(&s, &rows, &files, cameras, cli->output, &found, to, e);
 	if (!bad) {
-		note_splats(cli, &s, &rows, files.splats);
+		note_splats(cli, &s, &rows, &found, files.splats);
 		note_cameras(cli, &s.cameras, cameras, &found);
 	}
 	free(rows.dropped);

@@ -27,6 +27,7 @@ static int check_safetensors(struct check *c, const char *path, struct err *e)
 		int (*check)(struct check *c, const char *path, struct err *e);
 	} ours[] = {
 		{"refer.splats", check_splats},
+		{"refer.motion", check_motion},
 		{"refer.text", check_text},
 		{"refer.weights", check_weights},
 		{"refer.model", check_model},

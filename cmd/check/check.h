@@ -50,6 +50,7 @@ int check_detections(struct check *c, const char *path, struct err *e);
 
 /* Those of ours, whose kind is known already. */
 int check_splats(struct check *c, const char *path, struct err *e);
+int check_motion(struct check *c, const char *path, struct err *e);
 int check_text(struct check *c, const char *path, struct err *e);
 int check_weights(struct check *c, const char *path, struct err *e);
 int check_model(struct check *c, const char *path, struct err *e);
@@ -67,6 +68,7 @@ int check_image(struct check *c, const char *path, struct err *e);
 int check_scene_cameras(struct check *c, const char *path, struct err *e);
 int check_cameras(struct check *c, const char *path, const char *kind, struct err *e);
 
+void check_add_motion(struct check *c, const struct motion *m);
 void check_add_splats(struct check *c, const struct splats *s);
 /* The views and, where they have one size, that. */
 void check_add_views(struct check *c, const struct cameras *views);

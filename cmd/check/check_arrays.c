@@ -48,6 +48,24 @@ int check_splats(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
+void check_add_motion(struct check *c, const struct motion *m)
+{
+	check_add(c, "times", (long long)m->times);
+	check_add(c, "moving gaussians", (long long)m->moved);
+}
+
+int check_motion(struct check *c, const char *path, struct err *e)
+{
+	SCOPED_BY(motion_close) struct motion m = {0};
+
+	if (motion_open(&m, path, e))
+		return -1;
+	c->scene = m.scene;
+	check_add_motion(c, &m);
+	check_add(c, "gaussians of the scene", (long long)m.gaussians);
+	return 0;
+}
+
 int check_scene_cameras(struct check *c, const char *path, struct err *e)
 {
 	SCOPED_BY(cameras_free) struct cameras views = {0};

@@ -128,6 +128,8 @@ static int check_scene(struct check *c, const char *path, struct err *e)
 	c->scene = s.fingerprint;
 	check_add_splats(c, &s.splats);
 	check_add_views(c, &s.cameras);
+	if (s.motion.times)
+		check_add_motion(c, &s.motion);
 	return 0;
 }
 

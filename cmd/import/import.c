@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "cmd/import/frames.h"
 #include "cmd/import/photographs.h"
 #include "formats/splats/anysplats.h"
 #include "formats/cameras/camerafile.h"
@@ -13,7 +14,9 @@
 
 #include <dirent.h>
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
+#include <unistd.h>
 
 static const char every[] = "every:";
 
@@ -135,6 +138,9 @@ char *import_find_splats(const char *path, struct err *e)
 	if (!found || file_exists(found))
 		return found;
 	free(found);
+	const int has_frames = frames_is_folder(path, e);
+	if (has_frames)
+		return has_frames > 0 ? mem_strdup(path, e) : NULL;
 	found = find_in_folder(path, e);
 	if (found && !file_exists(found)) {
 		err_set(e, ERR_FORMAT,
@@ -217,18 +223,64 @@ static char *describe_options(const char *test_views, struct err *e)
 	return text;
 }
 
-int import_scene(struct scene *s, struct rows_report *report, const struct import_options *o,
-	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
-	struct err *e)
+/* What is known of the motion before the splats are read. */
+static int open_motion(
+	struct moving *m, struct scene *s, const struct import_options *o, const char *cameras, struct err *e)
 {
-	*found = (struct import_found){.near = 1};
-	/* Cameras first: what is wrong with them, or with a view's name, is said before the slow splats. */
-	if (read_cameras(&s->cameras, o, cameras, e) || import_split(&s->cameras, o->test_views, e) ||
-		anysplats_read(&s->splats, s->offset, report, o->splats, e))
+	const int is_moving = o->motion || file_is_dir(o->splats);
+
+	if (!is_moving && (o->times || !isnan(o->time)))
+		return err_set(e, ERR_USAGE,
+			"%s: %s is one file and there is no --motion: the scene is still",
+			o->times ? "--times" : "--time", o->splats);
+	for (size_t i = 0; i < s->cameras.n; i++) {
+		struct camera *c = &s->cameras.views[i];
+		if (is_moving && c->has_time && !isnan(o->time))
+			return err_set(e, ERR_USAGE, "--time: view '%s' has a time of its own, %.17g",
+				c->name, c->time);
+		c->has_time = is_moving && (c->has_time || !isnan(o->time));
+		c->time = isnan(o->time) ? c->time : o->time;
+	}
+	return is_moving && (moving_open(m, o->splats, o->motion, o->times, e) ||
+				    moving_check_views(m, &s->cameras, cameras, e))
+		       ? -1
+		       : 0;
+}
+
+/* The splats, those of the first time where the scene moves. */
+static int read_splats(struct scene *s, struct rows_report *report, const struct import_options *o,
+	struct moving *m, struct err *e)
+{
+	const char *path = m->paths ? m->paths[0] : o->splats;
+
+	if (anysplats_read(&s->splats, s->offset, report, path, e))
 		return -1;
 	if (!s->splats.n)
-		return err_set(e, ERR_FORMAT, "%s: holds no Gaussians", file_name(o->splats));
-	if (move(s, o->splats, cameras, &found->near, to, e))
+		return err_set(e, ERR_FORMAT, "%s: holds no Gaussians", file_name(path));
+	return m->n ? moving_first(m, s, report, path, e) : 0;
+}
+
+/* The folder's files; of an earlier scene's motion nothing stays. */
+static int write_folder(const struct scene *s, const struct moving *m, const char *folder,
+	const char *metadata, struct import_found *found, struct err *e)
+{
+	SCOPED char *motion = file_join(folder, "motion.safetensors", "", e);
+
+	found->times = m->n;
+	if (!motion || (m->n && moving_write(m, s, folder, &found->moved, e)) ||
+		scene_write(s, folder, metadata, e))
+		return -1;
+	return !m->n && remove(motion) && errno != ENOENT ? err_errno(e, "%s", motion) : 0;
+}
+
+static int import_all(struct scene *s, struct rows_report *report, const struct import_options *o,
+	const char *cameras, const char *folder, struct moving *m, struct import_found *found,
+	const struct report *to, struct err *e)
+{
+	/* Cameras first: what is wrong with them, or with a view's name, is said before the slow splats. */
+	if (read_cameras(&s->cameras, o, cameras, e) || import_split(&s->cameras, o->test_views, e) ||
+		open_motion(m, s, o, cameras, e) || read_splats(s, report, o, m, e) ||
+		move(s, o->splats, cameras, &found->near, to, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	s->is_metric = o->is_metric;
@@ -236,5 +288,20 @@ int import_scene(struct scene *s, struct rows_report *report, const struct impor
 	return -(!metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
 		 photographs_find(&s->cameras, o->images, folder, &found->missing, e) ||
 		 (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
-		 scene_write(s, folder, metadata, e));
+		 write_folder(s, m, folder, metadata, found, e));
+}
+
+int import_scene(struct scene *s, struct rows_report *report, const struct import_options *o,
+	const char *cameras, const char *folder, struct import_found *found, const struct report *to,
+	struct err *e)
+{
+	const int was_there = file_exists(folder);
+	struct moving m = {0};
+
+	*found = (struct import_found){.near = 1};
+	const int bad = import_all(s, report, o, cameras, folder, &m, found, to, e);
+	moving_free(&m);
+	if (bad && !was_there)
+		rmdir(folder); /* where it is empty */
+	return bad ? -1 : 0;
 }

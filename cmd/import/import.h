@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 #include "base/report.h"
+#include "cmd/import/moving.h"
 #include "formats/scene/scene.h"
 #include "splat/gaussian_rows.h"
 
@@ -50,10 +51,13 @@ int resemblance_find(struct resemblance *r, const struct scene *s, const char *f
 	const struct report *to, struct err *e);
 
 struct import_options {
-	const char *splats;	/* "-" is stdin */
+	const char *splats;	/* "-" is stdin; a folder of frames: the scene moves */
+	const char *motion;	/* .npz of means or displacements: the scene moves; NULL: not so */
+	const char *times;	/* of frames, as moving_open takes them; NULL: evenly from 0 to 1 */
 	const char *cameras;	/* a file, or a folder that has one; NULL: beside splats */
 	const char *images;	/* folder of the photographs; NULL: none */
 	const char *test_views; /* NAME,... or every:N; NULL: the camera file's */
+	double time;		/* of the views of a scene that moves, where they have none; NAN: not said */
 	int is_metric;		/* a unit of the splats is a metre */
 	int undistort;		/* take the pinholes of cameras that distort, which are refused else */
 };
@@ -67,6 +71,7 @@ int import_split(struct cameras *c, const char *test_views, struct err *e);
 struct import_found {
 	size_t missing; /* views without a photograph */
 	struct resemblance resemblance;
+	size_t times, moved; /* of a scene that moves: stored times, and Gaussians that ever move */
 	double near; /* POINT_FRAME_LEAST and more, where splats and the cameras' points have one frame */
 };
 

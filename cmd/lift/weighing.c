@@ -23,7 +23,8 @@ struct room {
 	struct weighed_packed packed;
 	float *dropped;
 	size_t dropped_room;
-	double covered; /* the largest part of a view whose pixels are more scene than background */
+	struct splats moved; /* at the view's time */
+	double covered;	     /* the largest part of a view whose pixels are more scene than background */
 };
 
 static void room_free(struct room *room)
@@ -109,10 +110,12 @@ static int weigh_view(void *context, int worker, size_t at, struct err *e)
 	const struct camera camera = camera_resize(full, done->width, done->height);
 	struct weighed_packed *packed = &room->packed;
 	const struct render_weights *rendered = &room->rendered;
-	int bad = prepare(room, &of->scene->splats, &camera, e) ||
+	int bad = scene_splats_at(&room->moved, of->scene, full, NULL, e) ||
+		  prepare(room, &room->moved, &camera, e) ||
 		  (o->is_packed ? weigh_packed(packed, room->view, &camera, of->scene->splats.n, o->tolerance,
 					  room->dropped, e)
 				: render(room, pixels, o, e));
+	scene_splats_release(&room->moved, of->scene);
 	done->ms = 1e3 * (omp_get_wtime() - start);
 	const struct weights w = {.width = done->width,
 		.height = done->height,

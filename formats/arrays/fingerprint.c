@@ -23,12 +23,14 @@ struct fingerprint fingerprint_scene(const struct splats *s)
 
 struct fingerprint fingerprint_camera(const struct camera *c)
 {
-	double numbers[6 + 16] = {c->width, c->height, c->fx, c->fy, c->cx, c->cy};
+	double numbers[6 + 16 + 1] = {c->width, c->height, c->fx, c->fy, c->cx, c->cy};
+	const size_t n = 6 + 16 + (c->has_time ? 1 : 0);
 
 	memcpy(numbers + 6, c->world_to_camera, sizeof c->world_to_camera);
-	for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
+	numbers[6 + 16] = c->time;
+	for (size_t i = 0; i < n; i++)
 		numbers[i] += 0.0; /* -0 becomes 0 */
-	return fingerprint_of(hash64(numbers, sizeof numbers, 0));
+	return fingerprint_of(hash64(numbers, n * sizeof *numbers, 0));
 }
 
 /* A sum, as the order in which a file lists its tokens means nothing. */

@@ -22,7 +22,7 @@ struct origin {
 
 /* Of a scene: its means, in their order, and its near plane where that is not 3DGS's. */
 struct fingerprint fingerprint_scene(const struct splats *s);
-/* Of a view: image size, intrinsics and pose. */
+/* Of a view: image size, intrinsics, pose and, where it has one, time. */
 struct fingerprint fingerprint_camera(const struct camera *c);
 /* Of an encoder: its sizes, weights, vocabulary and merges (NULL: it has none), and whether words are taken
  * from the vocabulary as they are. */

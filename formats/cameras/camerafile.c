@@ -22,6 +22,7 @@ static int read_view(struct camera *c, const cJSON *item, const char *where, str
 		json_number(item, "height", 1, &height, where, e) < 0 ||
 		json_number(item, "fx", 1, &c->fx, where, e) < 0 ||
 		json_number(item, "fy", 1, &c->fy, where, e) < 0 ||
+		(c->has_time = json_number(item, "time", 0, &c->time, where, e)) < 0 ||
 		json_matrix(item, "position", 3, 0, centre, where, e) ||
 		json_matrix(item, "rotation", 3, 3, rows, where, e))
 		return -1;

@@ -154,6 +154,7 @@ static int read_frame(
 	const char *image = NULL;
 
 	if (json_string(frame, "file_path", 1, &image, where, e) < 0 ||
+		(c->has_time = json_number(frame, "time", 0, &c->time, where, e)) < 0 ||
 		read_intrinsics(c, frame, root, where, e) ||
 		json_matrix(frame, "transform_matrix", rows, 4, m[0], where, e))
 		return -1;

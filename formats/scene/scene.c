@@ -159,7 +159,8 @@ static int read_view(struct camera *c, const cJSON *view, const char *where, str
 		json_number(view, "cy", 1, &c->cy, where, e) < 0 ||
 		json_matrix(view, "world_to_camera", 4, 4, c->world_to_camera[0], where, e) ||
 		read_lens(&c->lens, view, where, e) || json_string(view, "image", 0, &image, where, e) < 0 ||
-		json_string(view, "source", 0, &source, where, e) < 0)
+		json_string(view, "source", 0, &source, where, e) < 0 ||
+		(c->has_time = json_number(view, "time", 0, &c->time, where, e)) < 0)
 		return -1;
 	if (view_set_size(c, width, height))
 		return err_file(e, where, "size %gx%g is not whole numbers in 1 to 65536", width, height);
@@ -221,13 +222,52 @@ static int read_cameras(struct cameras *c, const char *dir, struct err *e)
 	return path ? scene_read_cameras_file(c, path, e) : -1;
 }
 
+/* The moved Gaussians of the first time are the scene's, and views are of its times. */
+static int check_motion(const struct scene *s, const char *splats, struct err *e)
+{
+	const struct motion *m = &s->motion;
+
+	if (fingerprint_check("scene", m->file.path, &m->scene, splats, &s->fingerprint, e))
+		return -1;
+	if (m->gaussians != s->splats.n)
+		return err_file(e, m->file.path, "is of %zu Gaussians, %s has %zu", m->gaussians, splats,
+			s->splats.n);
+	for (size_t k = 0; k < m->moved; k++)
+		if (memcmp(m->means + 3 * k, s->splats.means + 3 * (size_t)m->ids[k], 3 * sizeof(float)) != 0)
+			return err_file(e, m->file.path,
+				"tensor 'means': Gaussian %d is at its first time elsewhere than in %s",
+				(int)m->ids[k], splats);
+	for (size_t i = 0; i < s->cameras.n; i++) {
+		const struct camera *c = &s->cameras.views[i];
+		size_t frame;
+		if (c->has_time && motion_find(m, c->time, &frame, e))
+			return err_prefix(e, c->name);
+	}
+	return 0;
+}
+
+static int read_motion(struct scene *s, const char *dir, const char *splats, struct err *e)
+{
+	SCOPED char *path = file_join(dir, "motion.safetensors", "", e);
+
+	if (!path)
+		return -1;
+	if (!file_exists(path)) {
+		for (size_t i = 0; i < s->cameras.n; i++)
+			s->cameras.views[i].has_time = 0;
+		return 0;
+	}
+	return -(motion_open(&s->motion, path, e) || check_motion(s, splats, e));
+}
+
 int scene_read(struct scene *s, const char *dir, struct err *e)
 {
 	SCOPED char *path = file_join(dir, "splats.safetensors", "", e);
 
 	*s = (struct scene){0};
 	int bad = path ? scene_read_splats(s, path, e) : -1;
-	if (bad || !(s->path = mem_strdup(dir, e)) || read_cameras(&s->cameras, dir, e)) {
+	if (bad || !(s->path = mem_strdup(dir, e)) || read_cameras(&s->cameras, dir, e) ||
+		read_motion(s, dir, path, e)) {
 		scene_free(s);
 		return -1;
 	}
@@ -239,6 +279,7 @@ void scene_free(struct scene *s)
 	free(s->path);
 	splats_free(&s->splats);
 	cameras_free(&s->cameras);
+	motion_close(&s->motion);
 	*s = (struct scene){0};
 }
 
@@ -269,6 +310,8 @@ static void put_view(FILE *out, const struct camera *c)
 		fputs("null", out);
 	if (c->source)
 		jsonl_put_string(out, ",\"source\":", c->source);
+	if (c->has_time)
+		fprintf(out, ",\"time\":%.17g", c->time);
 	if (c->lens.model)
 		put_lens(out, &c->lens);
 	fputs("}", out);

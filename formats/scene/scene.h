@@ -1,8 +1,10 @@
-/* A scene folder: splats.safetensors (refer.splats) and cameras.json (formats/scene/scene.md). */
+/* A scene folder: splats.safetensors (refer.splats), cameras.json and, where it moves, motion.safetensors
+ * (formats/scene/scene.md). */
 #pragma once
 
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
+#include "formats/scene/motion.h"
 #include "geom/camera.h"
 #include "splat/splats.h"
 
@@ -13,15 +15,24 @@ struct scene {
 	struct cameras cameras;
 	double offset[3]; /* world = means + offset: what the import subtracted */
 	int is_metric;	  /* a unit is a metre; else nobody said what it is */
+	/* The splats are those of its first time. Of scene_read; times is 0 where the scene is still. */
+	struct motion motion;
 };
 
-/* Reads and checks both files. Messages name the file and the tensor or key. */
+/* Reads and checks all files. Messages name the file and the tensor or key. */
 int scene_read(struct scene *s, const char *dir, struct err *e);
 void scene_free(struct scene *s);
 
 /* One of the files. scene_read_splats sets splats, fingerprint and offset of a zeroed *s. */
 int scene_read_splats(struct scene *s, const char *path, struct err *e);
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);
+
+/* to: the scene's splats at the time of a view, or of `t` where that is not NULL; of a still scene as they
+ * are. What does not move is the scene's own. ERR_FORMAT where neither says a time, or it is none of the
+ * scene's. */
+int scene_splats_at(
+	struct splats *to, const struct scene *s, const struct camera *view, const double *t, struct err *e);
+void scene_splats_release(struct splats *at, const struct scene *s);
 
 /* Makes dir and writes both files, each appearing whole. `options` goes into the metadata. */
 int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e);

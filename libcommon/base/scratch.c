@@ -35,20 +35,26 @@ static int write_all(const struct scratch *s, const struct scratch_piece *piece,
 	return 0;
 }
 
-int scratch_put(struct scratch *s, const struct scratch_piece *pieces, size_t n, struct scratch_part *part,
-	struct err *e)
+int scratch_more(struct scratch *s, const void *data, size_t bytes, struct scratch_part *part, struct err *e)
 {
 	const size_t page = (size_t)sysconf(_SC_PAGESIZE);
 
+	if (write_all(s, &(struct scratch_piece){data, bytes}, part->at + part->bytes, e))
+		return -1;
+	part->bytes += bytes;
+	s->end = part->at + (part->bytes + page - 1) / page * page;
+	return 0;
+}
+
+int scratch_put(struct scratch *s, const struct scratch_piece *pieces, size_t n, struct scratch_part *part,
+	struct err *e)
+{
 	if (!s->is_open && make(s, e))
 		return -1;
 	*part = (struct scratch_part){.at = s->end};
-	for (size_t k = 0; k < n; k++) {
-		if (write_all(s, &pieces[k], s->end + part->bytes, e))
+	for (size_t k = 0; k < n; k++)
+		if (scratch_more(s, pieces[k].data, pieces[k].bytes, part, e))
 			return -1;
-		part->bytes += pieces[k].bytes;
-	}
-	s->end += (part->bytes + page - 1) / page * page;
 	return 0;
 }
 

@@ -28,6 +28,9 @@ struct scratch_piece {
 int scratch_put(struct scratch *s, const struct scratch_piece *pieces, size_t n, struct scratch_part *part,
 	struct err *e);
 
+/* Writes more at the end of the part that was put last. */
+int scratch_more(struct scratch *s, const void *data, size_t bytes, struct scratch_part *part, struct err *e);
+
 /* Has the system read a part that is needed soon, without waiting for it. */
 void scratch_ahead(const struct scratch *s, const struct scratch_part *part);
 

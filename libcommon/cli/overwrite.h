@@ -16,7 +16,7 @@ struct cli_file {
 };
 
 /* The folders that several tools read, as words of cli_refuse_overwrite's lists. */
-#define CLI_SCENE_PARTS "splats.safetensors|cameras.json"
+#define CLI_SCENE_PARTS "splats.safetensors|cameras.json|motion.safetensors"
 #define CLI_WEIGHTS_PARTS "*.safetensors"
 #define CLI_SCENE "scene:" CLI_SCENE_PARTS
 #define CLI_WEIGHTS "weights:" CLI_WEIGHTS_PARTS

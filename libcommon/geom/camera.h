@@ -23,6 +23,8 @@ struct camera {
 	double fx, fy, cx, cy;	      /* pixels; the centre of pixel (column i, row j) is (i+0.5, j+0.5) */
 	double world_to_camera[4][4]; /* row-major, rigid: x_camera = R x_world + t */
 	enum camera_split split;
+	int has_time; /* the photograph is of this time, in a scene that moves */
+	double time;
 	struct lens lens;
 };
 

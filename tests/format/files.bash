@@ -44,9 +44,9 @@ splats() {
 
 # view [KEY=VALUE]...: a view of a scene's cameras.json; VALUE is JSON, an empty one leaves the key out.
 view() {
-	local keys=(name width height fx fy cx cy world_to_camera split image lens) key assignment line=
+	local keys=(name width height fx fy cx cy world_to_camera split image time lens) key assignment line=
 	local -A value=([name]='"v1"' [width]=4 [height]=3 [fx]=5 [fy]=5 [cx]=2 [cy]=1.5
-		[world_to_camera]='[[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]' [split]='"train"' [image]=null [lens]=)
+		[world_to_camera]='[[1,0,0,0],[0,1,0,0],[0,0,1,2],[0,0,0,1]]' [split]='"train"' [image]=null [time]= [lens]=)
 	for assignment; do value[${assignment%%=*}]=${assignment#*=}; done
 	for key in "${keys[@]}"; do
 		[ -z "${value[$key]}" ] || line+=${line:+,}\"$key\":${value[$key]}

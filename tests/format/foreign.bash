@@ -31,13 +31,13 @@ colmap() {
 
 # camera3dgs [KEY=VALUE]...: an entry of a 3DGS cameras.json; VALUE is JSON, an empty one leaves the key out.
 camera3dgs() {
-	entry 'id img_name width height position rotation fy fx' id=0 'img_name="b"' width=40 height=30 'position=[1,2,3]' \
+	entry 'id img_name width height position rotation fy fx time' id=0 'img_name="b"' width=40 height=30 'position=[1,2,3]' \
 		'rotation=[[0,0,1],[1,0,0],[0,1,0]]' fy=51 fx=50 "$@"
 }
 
 # frame [KEY=VALUE]...: a frame of a transforms.json.
 frame() {
-	entry 'file_path transform_matrix w h fl_x fl_y cx cy camera_angle_x camera_angle_y camera_model k1 k2 k3 k4 p1 p2' \
+	entry 'file_path transform_matrix w h fl_x fl_y cx cy camera_angle_x camera_angle_y camera_model k1 k2 k3 k4 p1 p2 time' \
 		'file_path="images/b.png"' 'transform_matrix=[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]' "$@"
 }
 

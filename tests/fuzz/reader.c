@@ -64,6 +64,7 @@ SIMPLE(detections, struct detections, detections_read, detections_free)
 SIMPLE(features, struct features, features_open, features_close)
 SIMPLE(masks, struct masks, masks_read, masks_free)
 SIMPLE(model, struct model, model_read, model_free)
+SIMPLE(motion, struct motion, motion_open, motion_close)
 SIMPLE(npy, struct npy, npy_open, npy_close)
 SIMPLE(parser, struct parser_weights, parser_weights_read, parser_weights_free)
 SIMPLE(safetensors, struct safetensors, safetensors_open, safetensors_close)
@@ -325,6 +326,7 @@ static const struct target {
 	{"merges-json", try_merges, {"tokenizer.json"}, 0},
 	{"merges-text", try_merges, {"vocab.json", "merges.txt"}, 0},
 	{"model", try_model, {0}, 1},
+	{"motion", try_motion, {0}, 0},
 	{"npy", try_npy, {0}, 0},
 	{"npz", try_npz, {0}, 0},
 	{"parser", try_parser, {0}, 1},

@@ -195,6 +195,9 @@ seed_cut parser 64 parser.safetensors
 seed ply few.ply packed.ply
 seed safetensors few-lifted.safetensors few/weights/view_000.safetensors "$golden/good/small.safetensors"
 folder scene few/cameras.json few/splats.safetensors
+mkdir -p frames && cp few.ply frames/1.ply && gs-transform -q --translate 0.1,0,0 -o frames/2.ply few.ply
+gs-import -q --cameras small/sparse/0 -o moves frames
+seed motion moves/motion.safetensors
 seed selection some-selection.safetensors
 seed sentences some.jsonl
 # Its tables are shorter with rounded numbers.
@@ -216,7 +219,7 @@ seed vocab-json encoder/tokenizer.json
 : >empty
 folder vocab-text encoder/vocab.txt empty
 seed weights few/weights/view_000.safetensors few/packed/view_000.safetensors few/f16/view_000.safetensors
-for target in lifted features selection masks boxes sentences text weights splats ply image npy cameras; do
+for target in lifted features selection masks boxes sentences text weights splats motion ply image npy cameras; do
 	mkdir -p "$dir/check" && for file in "$dir/$target"/*; do cp "$file" "$dir/check/$target-${file##*/}"; done
 done
 
@@ -239,7 +242,7 @@ for target in "$dir"/*/; do
 	colmap) set -- colmap.c colmap_text.c ;;
 	sog) set -- sog.c archive.c ;;
 	spz) set -- spz.c spz_container.c ;;
-	check) set -- scene.c weights.c text.c lifted.c features.c selection.c masks.c boxes.c sentences.c ;;
+	check) set -- scene.c motion.c weights.c text.c lifted.c features.c selection.c masks.c boxes.c sentences.c ;;
 	requests) set -- ../../cmd/serve/serve_ask.c ../../cmd/serve/serve_place.c ../../cmd/serve/serve_label.c ../../cmd/serve/serving.c ;;
 	*) set -- "${target%-*}.c" ;;
 	esac

@@ -1,0 +1,43 @@
+/* A scene's splats at one time: means and rotations of their own, and the rest the scene's. */
+#include "base/mem.h"
+#include "formats/scene/scene.h"
+
+static float *copy(const float *from, size_t n, struct err *e)
+{
+	float *to = mem_alloc(n, sizeof *to, "splats", e);
+
+	return to ? memcpy(to, from, n * sizeof *to) : NULL;
+}
+
+int scene_splats_at(
+	struct splats *to, const struct scene *s, const struct camera *view, const double *t, struct err *e)
+{
+	const struct splats *from = &s->splats;
+
+	*to = *from;
+	if (!s->motion.times)
+		return 0;
+	if (!t && !view->has_time)
+		return err_set(e, ERR_FORMAT,
+			"%s: the scene moves, and view '%s' has no time: gs-import takes it from the key 'time' of a camera, or one for all with --time",
+			s->path, view->name);
+	to->means = copy(from->means, 3 * from->n, e);
+	to->quats = to->means ? copy(from->quats, 4 * from->n, e) : NULL;
+	if (to->quats && s->motion.scales)
+		to->scales = copy(from->scales, 3 * from->n, e);
+	if (to->means && to->quats && to->scales && !motion_set(&s->motion, t ? *t : view->time, to, e))
+		return 0;
+	scene_splats_release(to, s);
+	return -1;
+}
+
+void scene_splats_release(struct splats *at, const struct scene *s)
+{
+	float *const own[] = {at->means, at->quats, at->scales}, *const others[] = {s->splats.means,
+									 s->splats.quats, s->splats.scales};
+
+	for (int k = 0; k < 3; k++)
+		if (own[k] != others[k])
+			free(own[k]);
+	*at = (struct splats){0};
+}
