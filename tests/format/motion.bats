@@ -66,6 +66,9 @@ refused() {
 	says "$status" "gs-import: $reason" import "$@" && [ ! -e scene ]
 }
 
+# Fails where the command succeeds; a plain ! would let the test go on.
+not() { ! "$@"; }
+
 # stored BYTES: those that are stored.
 stored() { tail -c "$(($(wc -c <scene/motion.safetensors) - 8 - $(od -An -t u8 -N 8 scene/motion.safetensors)))" scene/motion.safetensors | od -An -v -t f8 -w8 -N "$1" | xargs; }
 
@@ -234,4 +237,29 @@ Try 'gs-import --help'." --time 1 f/t1.ply
 	local tensors
 	tensors() { tail -c "$(($(wc -c <"$1") - 8 - $(od -An -t u8 -N 8 "$1")))" "$1"; }
 	for tensors in w/*; do cmp <(tensors "$tensors") <(tensors "still/${tensors##*/}"); done
+}
+
+@test "masks: of what does not move those of the still scene, else those of the frame at the view's time" {
+	weighed_scene
+	"$BIN/refer-lift" -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl -o lifted
+	local render=("$BIN/refer-render" -q --text text.safetensors --split all)
+	"${render[@]}" --scene scene --model lifted -o still.jsonl
+	mkdir f && cp point_cloud.ply f/1.ply && cp point_cloud.ply f/2.ply
+	"$BIN/gs-import" -q --cameras sparse/0 --test-views "$(cat test-views)" --time 1 -o same f
+	"$BIN/gs-weigh" -q -o same-weights same
+	"$BIN/refer-lift" -q --scene same --weights same-weights --text text.safetensors --masks masks.jsonl -o same-lifted
+	"${render[@]}" --scene same --model same-lifted -o same.jsonl
+	cmp still.jsonl same.jsonl
+	# the second frame in motion, from what was lifted at the first
+	"$BIN/gs-transform" -q --translate 0.1,0,0 -o f/2.ply point_cloud.ply
+	"$BIN/gs-import" -q --cameras sparse/0 --test-views "$(cat test-views)" --time 1 -o moved f
+	"$BIN/gs-import" -q --cameras sparse/0 --test-views "$(cat test-views)" -o second f/2.ply
+	"${render[@]}" --scene moved --model lifted -o moved.jsonl
+	not cmp -s still.jsonl moved.jsonl
+	"$BIN/gs-weigh" -q -o second-weights second && "$BIN/gs-weigh" -q -o moved-weights moved
+	local view=second-weights/view_000.safetensors threads
+	cmp <(tail -c 4000 $view) <(tail -c 4000 moved-weights/view_000.safetensors)
+	for threads in 1 2 7; do
+		"${render[@]}" --threads $threads --scene moved --model lifted -o threads.jsonl && cmp moved.jsonl threads.jsonl
+	done
 }
