@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Usage: DATA=DIR/room SPLATS=room.ply [BIN=build/bin] [BERT=DIR] [KEEP=DIR] tests/bench/room.sh
+# Usage: DATA=DIR/room SPLATS=room.ply [BIN=build/bin] [BERT=DIR] [KEEP=DIR] tests/bench/room.sh [SENTENCES]
 #
 # The room of pipelines/lift.md, in its layout (sparse/0, images, truth.jsonl, sentences.jsonl, dev.jsonl): lifts the true masks with
-# their names alone and with training sentences, and asks dev.jsonl. Prints what is right by kind (miou-score --answers). KEEP
+# their names alone and with training sentences, and asks dev.jsonl or SENTENCES; room.jsonl beside this are such by a writer who
+# saw photographs alone. Prints what is right by kind (miou-score --answers). KEEP
 # keeps the scene and its weights for the next run, which lifts again.
 set -euo pipefail
 export LC_ALL=C
@@ -13,7 +14,7 @@ BERT=${BERT:-${XDG_CACHE_HOME:-$HOME/.cache}/refersplat/encoder}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 keep=${KEEP:-$work}
-jq -c 'if .objects or .object then . else . + {objects: []} end' "$DATA/dev.jsonl" >"$work/dev.jsonl"
+jq -c 'if .objects or .object then . else . + {objects: []} end' "${1:-$DATA/dev.jsonl}" >"$work/dev.jsonl"
 "$BIN/text-encode" -q --model "$BERT" -o "$work/dev.safetensors" "$work/dev.jsonl"
 
 # lift WAY [VARIABLE]: KEEP/WAY
