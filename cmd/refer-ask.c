@@ -18,7 +18,7 @@ enum { ASK_UNSURE = 5 };
 static struct {
 	struct asking_options asking;
 	struct reply_options reply;
-} options = {.asking = {.least = RESPONSES_LEAST}};
+} options = {.asking = {.least = RESPONSES_LEAST, .time = NAN}};
 
 static const struct cli_option table[] = {
 	CLI_TEXT("scene", &options.asking.given.scene, "SCENE", "scene folder (default: RUN/scene)"),
@@ -34,6 +34,8 @@ static const struct cli_option table[] = {
 		"likewise the thing in a box, such as a detector draws"),
 	CLI_TEXT("viewpoint", &options.asking.viewpoint, "VIEW|x,y,z",
 		"where questions are asked: left and right are as seen from there (default: between the training views)"),
+	{"time", 0, CLI_REAL, &options.asking.time, "T",
+		"of a scene that moves: where things are at this time (default: its first)", 0, 0},
 	{"min-probability", 0, CLI_REAL, &options.asking.least, "P",
 		"a question less likely to mean anything that is here is refused (default 0.5)", 0, 1},
 	CLI_SWITCH("always", &options.asking.is_always,

@@ -21,6 +21,8 @@ static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUES
 		"lifted models: a sentence less likely to mean anything means nothing (default 0.5)", 0, 1},
 	CLI_TEXT("viewpoint", &options.request.viewpoint, "VIEW|x,y,z",
 		"lifted models: where sentences are said (default: the view that a sentence names, else between the training views)"),
+	{"time", 0, CLI_REAL, &options.request.time, "T",
+		"of a scene that moves: where things are at this time (default: its first)", 0, 0},
 	CLI_TEXT("ply", &options.ply, "FILE",
 		"write the scene with the object of the one sentence as a 3DGS .ply"),
 	CLI_TEXT("splat", &options.splat, "FILE", "the same as a .splat for web viewers"),
@@ -88,8 +90,8 @@ static void check_all(const struct cli *c)
 
 	if (!options.is_all && options.each)
 		cli_usage(c, "--each is for --all");
-	if (options.is_all && (o->text || o->refs || o->viewpoint || o->sentences != REQUEST_ALL ||
-				      options.splat || options.show))
+	if (options.is_all && (o->text || o->refs || o->viewpoint || !isnan(o->time) ||
+				      o->sentences != REQUEST_ALL || options.splat || options.show))
 		cli_usage(
 			c, "--all goes with --scene, --model, --ply and --each only: it needs no sentences");
 }
@@ -104,7 +106,7 @@ static enum locate_show check_run(const struct cli *c)
 	if (options.request.text || options.is_all || options.ply || options.splat || options.show ||
 		options.request.refs || options.request.sentences != REQUEST_ALL || options.each)
 		cli_usage(c,
-			"RUN QUESTION goes with --scene, --model, --encoder, --viewpoint and -o only: it needs no sentences");
+			"RUN QUESTION goes with --scene, --model, --encoder, --viewpoint, --time and -o only: it needs no sentences");
 	if (anysplats_format_of(c->output) < 0)
 		cli_usage(c, "-o %s: not .ply, .splat, .spz, .glb or .sog: it is for the scene", c->output);
 	cli_refuse_overwrite(c, CLI_SCENE " model encoder:" ENCODER_PARTS " RUN:scene|lifted|*.safetensors",
@@ -121,7 +123,8 @@ static int show(const struct cli *c, const struct report *to, struct err *e)
 			.model = (char *)o->model,
 			.encoder = (char *)options.encoder},
 		.viewpoint = o->viewpoint,
-		.least = o->least};
+		.least = o->least,
+		.time = o->time};
 	struct question q = {0};
 
 	if (!question_take(&q, c->operands[1]))

@@ -57,7 +57,8 @@ static int read_all(struct asking *a, struct err *e)
 	SCOPED_BY(anymodel_free) struct anymodel labels = {0};
 
 	if (run_folder_find(&a->files, a->options->run, &a->options->given, a->options->may_be_nameless, e) ||
-		scene_read(&a->scene, f->scene, e) || encoder_read(&a->encoder, f->encoder, 0, e))
+		scene_read(&a->scene, f->scene, e) || scene_move(&a->scene, a->options->time, e) ||
+		encoder_read(&a->encoder, f->encoder, 0, e))
 		return -1;
 	if (f->model ? read_model(a, &a->model, f->model, e) : make_nameless(a, e))
 		return -1;

@@ -30,6 +30,7 @@ struct asking_options {
 	struct run_folder given;   /* files in place of the folder's */
 	const char *viewpoint;	   /* VIEW or x,y,z; NULL: the usual one */
 	const char *camera;	   /* a file of one camera that is not in the scene; NULL: none */
+	double time;		   /* of a scene that moves; NaN: its first */
 	const char *without;	   /* PART,... as choose_without takes it; may be NULL */
 	double least;		   /* a question less likely to mean anything is refused ... */
 	int is_always;		   /* ... or, of one thing that is not asked to be there, guessed */

@@ -88,7 +88,12 @@ static int find_cosines(struct pixels *p, struct err *e)
 {
 	const struct query_vectors *v = &p->q->vectors;
 	const size_t gaussians = p->q->scene.splats.n;
-	struct render_view *view = render_prepare(&p->q->scene.splats, p->camera, e);
+	struct splats shown;
+
+	if (scene_splats_shown(&shown, &p->q->scene, p->camera, e))
+		return -1;
+	struct render_view *view = render_prepare(&shown, p->camera, e);
+	scene_splats_release(&shown, &p->q->scene);
 
 	if (!view)
 		return -1;

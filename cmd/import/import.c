@@ -287,7 +287,7 @@ static int import_all(struct scene *s, struct rows_report *report, const struct 
 	SCOPED char *metadata = describe_options(o->test_views, e);
 	return -(!metadata || near_find(&s->splats, &s->cameras, e) || file_make_dir(folder, e) ||
 		 photographs_find(&s->cameras, o->images, folder, &found->missing, e) ||
-		 (o->images && resemblance_find(&found->resemblance, s, folder, to, e)) ||
+		 (o->images && !m->n && resemblance_find(&found->resemblance, s, folder, to, e)) ||
 		 write_folder(s, m, folder, metadata, found, e));
 }
 

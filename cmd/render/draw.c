@@ -44,23 +44,17 @@ static void free_wholes(struct drawing *d)
 	d->wholes = NULL;
 }
 
-/* The whole objects, for outlines. */
-static int make_wholes(struct drawing *d, const struct splats *s, struct err *e)
+/* What all sentences mean, said from a viewpoint or each from its own. */
+static int answer(struct drawing *d, const struct viewpoint *from, struct err *e)
 {
 	struct request *r = d->request;
 
 	free_wholes(d);
-	if (!(d->wholes = mem_zalloc(r->responses.answers, sizeof *d->wholes, "objects", e)))
-		return -1;
-	return d->options->is_amodal ? responses_wholes(&r->responses, s, &r->scene.cameras, d->wholes, e)
-				     : 0;
-}
-
-/* What all sentences mean, said from a viewpoint or each from its own. */
-static int answer(struct drawing *d, const struct viewpoint *from, struct err *e)
-{
-	free_wholes(d);
-	return request_answer(d->request, from, e) || make_wholes(d, &d->request->scene.splats, e) ? -1 : 0;
+	int bad = request_answer(r, from, e) ||
+		  !(d->wholes = mem_zalloc(r->responses.answers, sizeof *d->wholes, "objects", e));
+	if (!bad && d->options->is_amodal)
+		bad = responses_wholes(&r->responses, &r->scene.splats, &r->scene.cameras, d->wholes, e);
+	return bad ? -1 : 0;
 }
 
 /* The point where the answer's responses are largest, if there are any above 0. */
@@ -150,12 +144,12 @@ static int put_view(void *data, size_t view, struct err *e)
 	return bad;
 }
 
-/* The views from d->first on, of splats at their time. */
-static int render_at(struct drawing *d, const struct splats *at, size_t views, struct err *e)
+/* The views from d->first on. */
+static int render(struct drawing *d, size_t views, struct err *e)
 {
 	const struct request *r = d->request;
 	const struct pictures *pictures = &d->options->pictures;
-	const struct answer_question q = {.splats = at,
+	const struct answer_question q = {.splats = &r->scene.splats,
 		.responses = &r->responses,
 		.wholes = d->options->is_amodal ? d->wholes : NULL,
 		.wants_rgb = pictures->overlays != NULL,
@@ -174,35 +168,23 @@ static int render_at(struct drawing *d, const struct splats *at, size_t views, s
 	return bad;
 }
 
-/* Where the scene moves each view is of its own time: one time in memory. */
-static int render(struct drawing *d, size_t views, struct err *e)
-{
-	const struct scene *scene = &d->request->scene;
-	const size_t end = d->first + views;
-	int bad = 0;
-
-	if (!scene->motion.times)
-		return render_at(d, &scene->splats, views, e);
-	for (; d->first < end && !bad; d->first++) {
-		struct splats at;
-		if (scene_splats_at(&at, scene, &d->views[d->first], NULL, e))
-			return -1;
-		bad = make_wholes(d, &at, e) || render_at(d, &at, 1, e);
-		scene_splats_release(&at, scene);
-	}
-	d->first = end - views;
-	return bad ? -1 : 0;
-}
-
+/* Of a scene that moves each view shows its own time, and sentences are judged at that. */
 static int render_all(struct drawing *d, const struct viewpoint *from, struct err *e)
 {
+	struct scene *scene = &d->request->scene;
+	const int is_moving = scene->motion.times && isnan(d->request->options->time);
+	double at = NAN;
 	int bad = 0;
 
-	if (!d->options->is_each)
+	if (!d->options->is_each && !is_moving)
 		return answer(d, from, e) || render(d, d->view_count, e);
 	for (d->first = 0; d->first < d->view_count && !bad; d->first++) {
-		const struct viewpoint own = {.kind = VIEWPOINT_CAMERA, .camera = &d->views[d->first]};
-		bad = answer(d, &own, e) || render(d, 1, e);
+		const struct camera *view = &d->views[d->first];
+		const struct viewpoint own = {.kind = VIEWPOINT_CAMERA, .camera = view};
+		const int is_new = d->options->is_each || !(view->time == at);
+		bad = (is_moving && scene_move_to_view(scene, view, e)) ||
+		      (is_new && answer(d, d->options->is_each ? &own : from, e)) || render(d, 1, e);
+		at = view->time;
 	}
 	return bad;
 }

@@ -93,8 +93,8 @@ void overlay_words(const struct request *r, size_t i, double score, char *out, s
 int request_read(struct request *r, const struct request_options *options, struct err *e)
 {
 	r->options = options;
-	return -(scene_read(&r->scene, options->scene, e) || text_read(&r->text, options->text, e) ||
-		 anymodel_read(&r->model, options->model, e));
+	return -(scene_read(&r->scene, options->scene, e) || scene_move(&r->scene, options->time, e) ||
+		 text_read(&r->text, options->text, e) || anymodel_read(&r->model, options->model, e));
 }
 
 int request_choose(struct request *r, struct err *e)

@@ -12,6 +12,7 @@
 #include "places/viewpoint.h"
 
 #include <cjson/cJSON.h>
+#include <math.h>
 
 /* Beside SPLIT_TRAIN and SPLIT_TEST. */
 enum { REQUEST_ALL = 2 };
@@ -25,11 +26,12 @@ struct request_options {
 	const char *without;		  /* and PART,... as choose_without takes it; may be NULL */
 	int wants_parts;		  /* and answer/responses.h */
 	const char *viewpoint;		  /* VIEW or x,y,z; NULL: each sentence's own */
+	double time; /* of a scene that moves; NaN: its first, or that of what is drawn */
 };
 
 #define REQUEST_DEFAULTS                                                                                     \
 	{                                                                                                    \
-		.sentences = REQUEST_ALL, .least = RESPONSES_LEAST                                           \
+		.sentences = REQUEST_ALL, .least = RESPONSES_LEAST, .time = NAN                              \
 	}
 
 /* Rows of a tool's table of options (cli/cli.h), for a struct request_options o. */

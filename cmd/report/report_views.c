@@ -44,12 +44,18 @@ int report_photograph(const char *folder, const struct camera *c, uint8_t **byte
 int report_rendering(const struct scene *s, const struct camera *c, uint8_t **bytes, size_t *n, struct err *e)
 {
 	const size_t values = 3 * (size_t)c->height * (size_t)c->width;
-	SCOPED_BY(render_release) struct render_view *v = render_prepare(&s->splats, c, e);
 	SCOPED float *rgb = mem_alloc(values, sizeof *rgb, "picture", e);
 	SCOPED uint8_t *bits = mem_alloc(values, 1, "picture", e);
 	const float black[3] = {0};
+	struct splats shown;
 
-	if (!v || !rgb || !bits || render_colors(v, &s->splats, c, black, rgb, e))
+	if (!rgb || !bits || scene_splats_shown(&shown, s, c, e))
+		return -1;
+	struct render_view *v = render_prepare(&shown, c, e);
+	const int bad = !v || render_colors(v, &shown, c, black, rgb, e);
+	render_free(v);
+	scene_splats_release(&shown, s);
+	if (bad)
 		return -1;
 	for (size_t i = 0; i < values; i++)
 		bits[i] = (uint8_t)lrintf(255 * rgb[i]);

@@ -34,5 +34,13 @@ int scene_splats_at(
 	struct splats *to, const struct scene *s, const struct camera *view, const double *t, struct err *e);
 void scene_splats_release(struct splats *at, const struct scene *s);
 
+/* The same for what is drawn: a view without a time shows the splats as they are. */
+int scene_splats_shown(struct splats *to, const struct scene *s, const struct camera *view, struct err *e);
+
+/* Moves the scene's own splats to a time, or to that of a view; NaN: they stay. ERR_USAGE where the scene is
+ * still. Not while others read them. */
+int scene_move(struct scene *s, double t, struct err *e);
+int scene_move_to_view(struct scene *s, const struct camera *view, struct err *e);
+
 /* Makes dir and writes both files, each appearing whole. `options` goes into the metadata. */
 int scene_write(const struct scene *s, const char *dir, const char *options, struct err *e);

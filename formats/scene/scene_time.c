@@ -2,11 +2,22 @@
 #include "base/mem.h"
 #include "formats/scene/scene.h"
 
+#include <math.h>
+
 static float *copy(const float *from, size_t n, struct err *e)
 {
 	float *to = mem_alloc(n, sizeof *to, "splats", e);
 
 	return to ? memcpy(to, from, n * sizeof *to) : NULL;
+}
+
+static int need_time(const struct scene *s, const struct camera *view, struct err *e)
+{
+	return view->has_time
+		       ? 0
+		       : err_set(e, ERR_FORMAT,
+				 "%s: the scene moves, and view '%s' has no time: gs-import takes it from the key 'time' of a camera, or one for all with --time",
+				 s->path, view->name);
 }
 
 int scene_splats_at(
@@ -17,10 +28,8 @@ int scene_splats_at(
 	*to = *from;
 	if (!s->motion.times)
 		return 0;
-	if (!t && !view->has_time)
-		return err_set(e, ERR_FORMAT,
-			"%s: the scene moves, and view '%s' has no time: gs-import takes it from the key 'time' of a camera, or one for all with --time",
-			s->path, view->name);
+	if (!t && need_time(s, view, e))
+		return -1;
 	to->means = copy(from->means, 3 * from->n, e);
 	to->quats = to->means ? copy(from->quats, 4 * from->n, e) : NULL;
 	if (to->quats && s->motion.scales)
@@ -40,4 +49,24 @@ void scene_splats_release(struct splats *at, const struct scene *s)
 		if (own[k] != others[k])
 			free(own[k]);
 	*at = (struct splats){0};
+}
+
+int scene_splats_shown(struct splats *to, const struct scene *s, const struct camera *view, struct err *e)
+{
+	*to = s->splats;
+	return view->has_time ? scene_splats_at(to, s, view, NULL, e) : 0;
+}
+
+int scene_move(struct scene *s, double t, struct err *e)
+{
+	if (isnan(t))
+		return 0;
+	if (!s->motion.times)
+		return err_set(e, ERR_USAGE, "--time: %s is still: it has no motion.safetensors", s->path);
+	return motion_set(&s->motion, t, &s->splats, e);
+}
+
+int scene_move_to_view(struct scene *s, const struct camera *view, struct err *e)
+{
+	return need_time(s, view, e) || motion_set(&s->motion, view->time, &s->splats, e) ? -1 : 0;
 }

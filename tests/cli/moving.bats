@@ -1,0 +1,88 @@
+#!/usr/bin/env bats
+# A scene that moves, from frames to masks: what holds whatever moves. The file and its import: format/motion.bats.
+
+# times FILTER: the cameras of the still scene in 3DGS's form, with the times and shifts that a filter of index $i gives.
+times() {
+	jq "[.[] | .world_to_camera as \$w | (if (\$w | length) == 16 then [\$w[0:4], \$w[4:8], \$w[8:12]] else \$w end) as \$m |
+		{img_name: .name, width, height, fx, fy, rotation: [range(3) as \$r | [range(3) as \$c | \$m[\$c][\$r]]],
+		 position: [range(3) as \$r | -([range(3) as \$c | \$m[\$c][\$r] * \$m[\$c][3]] | add)]}] |
+		to_entries | map(.key as \$i | .value | $1)" still/scene/cameras.json
+}
+
+# chain DIR SPLATS IMPORT_OPTION...: imports, weighs and lifts into DIR.
+chain() {
+	local dir=$1 splats=$2
+	shift 2
+	mkdir -p "$dir"
+	"$BIN/gs-import" -q --test-views "$(cat test-views)" "$@" -o "$dir/scene" "$splats"
+	"$BIN/gs-weigh" -q -o "$dir/weights" "$dir/scene"
+	"$BIN/refer-lift" -q --scene "$dir/scene" --weights "$dir/weights" --text text.safetensors --masks masks.jsonl -o "$dir/model"
+}
+
+render() { "$BIN/refer-render" -q --split all --scene "$1/scene" --text text.safetensors --model "$1/model" "${@:2}"; }
+
+setup_file() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	export OMP_WAIT_POLICY=passive
+	cd "$BATS_FILE_TMPDIR"
+	cp -r "$BATS_TEST_DIRNAME/../golden/bert" encoder
+	"$BIN/gs-synth" -q --objects 3 --views 6 --size 64x48 --gaussians 2000 -o .
+	"$BIN/text-encode" -q --model encoder -o text.safetensors sentences.jsonl
+	jq -c --arg test "$(cat test-views)" 'select(.view as $v | $test | split(",") | index($v) | not)' truth.jsonl >masks.jsonl
+	chain still point_cloud.ply
+	render still -o still/masks.jsonl
+	mkdir frames same
+	cp point_cloud.ply frames/f1.ply
+	"$BIN/gs-transform" -q --translate 2,-1,0.5 -o frames/f2.ply point_cloud.ply
+	cp point_cloud.ply same/f1.ply
+	cp point_cloud.ply same/f2.ply
+}
+
+setup() {
+	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load ../format/files
+	export OMP_WAIT_POLICY=passive
+	cd "$BATS_FILE_TMPDIR"
+}
+
+@test "a scene and cameras that move together have the masks of the still scene" {
+	times '.time = $i % 2 | .position = [.position, [2, -1, 0.5]] | .position = [range(3) as $k | .position[0][$k] + ($i % 2) * .position[1][$k]]' >together.json
+	chain together frames --cameras together.json --times 0:1
+	render together -o together/masks.jsonl
+	[ "$("$BIN/miou-score" --json --truth still/masks.jsonl together/masks.jsonl | jq '.miou > 0.995')" = true ]
+	# and without the times they have not
+	render together --time 0 -o together/first.jsonl
+	[ "$("$BIN/miou-score" --json --truth still/masks.jsonl together/first.jsonl | jq '.miou < 0.8')" = true ]
+	"$BIN/refer-render" -q --threads 7 --split all --scene together/scene --text text.safetensors --model together/model | cmp - together/masks.jsonl
+}
+
+@test "frames in which nothing moves are a still scene, to the byte" {
+	times '.time = $i % 2' >times.json
+	times '.' >cameras.json
+	chain same_moving same --cameras times.json
+	chain same_still point_cloud.ply --cameras cameras.json
+	render same_moving -o a.jsonl
+	render same_still -o b.jsonl
+	cmp a.jsonl b.jsonl
+}
+
+@test "where things are at a time" {
+	times '.time = 0' >first.json
+	chain two frames --cameras first.json
+	local object at
+	object=$(jq -r .object masks.jsonl | head -n 1)
+	centre() { "$BIN/refer-locate" -q --scene two/scene --text text.safetensors --model two/model "$@" | jq -sc "map(select(.object == \"$object\") | .centre // .box.centre)[0]"; }
+	at=$(jq -nc --argjson a "$(centre)" --argjson b "$(centre --time 1)" '[range(3) as $k | ($b[$k] - $a[$k]) * 100 | round]')
+	[ "$at" = '[200,-100,50]' ]
+	says 3 "refer-render: two/scene/motion.safetensors: time 2 is not within its times, 0 to 1" render two --time 2
+	says 2 "refer-render: --time: still/scene is still: it has no motion.safetensors
+Try 'refer-render --help'." render still --time 0
+}
+
+@test "views without a time are not drawn" {
+	times '.' >none.json
+	"$BIN/gs-import" -q --cameras none.json -o none frames
+	says 3 "refer-render: none: the scene moves, and view '$(jq -r '.[0].name' none/cameras.json)' has no time: gs-import takes it from the key 'time' of a camera, or one for all with --time" \
+		"$BIN/refer-render" -q --split all --scene none --text text.safetensors --model two/model
+	"$BIN/refer-render" -q --time 1 --split all --scene none --text text.safetensors --model two/model -o /dev/null
+}
