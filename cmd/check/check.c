@@ -164,7 +164,7 @@ static int check_stream(struct check *c, const char *path, struct err *e)
 		return check_anysplats(c, path, "3DGS ply", e);
 	if (begins(&h, "NGSP") || begins(&h, "\x1f\x8b"))
 		return check_anysplats(c, path, "spz", e);
-	if (begins(&h, "glTF") || path_ends(path, ".gltf"))
+	if (begins(&h, "glTF"))
 		return check_anysplats(c, path, "glb", e);
 	if (begins(&h, "\x93NUMPY"))
 		return check_npy(c, path, e);

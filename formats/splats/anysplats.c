@@ -42,7 +42,7 @@ int anysplats_read(
 		return splat_read_map(s, offset, report, name, &map, e);
 	if (!is_ply && (sog_is(&map) || path_ends(name, ".sog")))
 		return sog_read_map(s, offset, report, name, &map, e);
-	if (!is_ply && (glb_is(&map) || path_ends(name, ".glb") || path_ends(name, ".gltf")))
+	if (!is_ply && (glb_is(&map) || path_ends(name, ".glb")))
 		return glb_read_map(s, offset, report, name, &map, e);
 	return ply_read_map(s, offset, report, name, &map, e);
 }

@@ -1,5 +1,4 @@
-/* .glb, and .gltf with a file of numbers beside it: Gaussians in glTF, by the extension
- * KHR_gaussian_splatting. formats/splats/glb.md. */
+/* .glb: Gaussians in glTF, by the extension KHR_gaussian_splatting. formats/splats/glb.md. */
 #pragma once
 
 #include "base/err.h"
@@ -22,13 +21,11 @@ struct glb {
 	const char *name; /* as messages name it; it must outlive f */
 	const struct file_map *map;
 	cJSON *root;
-	const unsigned char *bin; /* the binary chunk, in the map; of a .gltf, the numbers' file */
+	const unsigned char *bin; /* the binary chunk, in the map */
 	size_t bin_length;
-	struct file_map numbers; /* of a .gltf */
 };
 
-/* Reads the header, the chunks and the JSON, or where the name ends in .gltf the JSON and the file of numbers
- * that it names. Returns 0, or -1 with *e set and nothing to release. */
+/* Reads the header, the chunks and the JSON. Returns 0, or -1 with *e set and nothing to release. */
 int glb_open(struct glb *f, const char *name, const struct file_map *map, struct err *e);
 void glb_close(struct glb *f);
 

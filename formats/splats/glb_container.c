@@ -1,13 +1,10 @@
-/* The container of a .glb, or a .gltf and its file of numbers, and what of glTF stands around the Gaussians:
- * chunks, accessors, nodes. */
+/* The container of a .glb, and what of glTF stands around the Gaussians: chunks, accessors, nodes. */
 #include "base/little.h"
 #include "base/mem.h"
-#include "base/path.h"
 #include "formats/records/json.h"
 #include "formats/splats/glb.h"
 #include "geom/rotation.h"
 
-#include <ctype.h>
 #include <math.h>
 #include <stdio.h>
 
@@ -53,63 +50,12 @@ static int parse_json(struct glb *f, const unsigned char *data, size_t length, s
 	return f->root ? 0 : -1;
 }
 
-/* A URI's %XX as the characters that they stand for, in place. */
-static void decode_uri(char *uri)
-{
-	static const char digits[] = "0123456789abcdef";
-	char *to = uri;
-
-	for (const char *from = uri; *from; from++) {
-		const char *high =
-			*from == '%' && from[1] ? strchr(digits, tolower((unsigned char)from[1])) : NULL;
-		const char *low = high && from[2] ? strchr(digits, tolower((unsigned char)from[2])) : NULL;
-		*to++ = (char)(low ? 16 * (high - digits) + (low - digits) : *from);
-		from += low ? 2 : 0;
-	}
-	*to = 0;
-}
-
-/* The file of buffer 0, beside the .gltf. */
-static int open_numbers(struct glb *f, struct err *e)
-{
-	const cJSON *buffer = cJSON_GetArrayItem(json_get(f->root, "buffers"), 0);
-	const char *uri = cJSON_GetStringValue(json_get(buffer, "uri"));
-
-	if (!uri)
-		return err_file(e, f->name, "buffer 0 has no file: key 'uri' is missing");
-	if (!strncmp(uri, "data:", 5) || strstr(uri, "://"))
-		return err_file(e, f->name, "buffer 0 is '%.20s...', not a file beside this one", uri);
-	SCOPED char *name = mem_strdup(uri, e), *folder = file_dir(f->name, e);
-	if (name)
-		decode_uri(name);
-	const int leaves = name && path_leaves(name);
-	SCOPED char *path = name && folder && !leaves ? file_join(folder, name, "", e) : NULL;
-	const int bad = !path || file_map(path, &f->numbers, e);
-	if (leaves)
-		err_file(e, f->name, "buffer 0 is '%.200s', not in the folder of this file", name);
-	f->bin = f->numbers.data;
-	f->bin_length = f->numbers.len;
-	return bad ? -1 : 0;
-}
-
-static int open_gltf(struct glb *f, struct err *e)
-{
-	if (parse_json(f, f->map->data, f->map->len, e))
-		return -1;
-	if (!open_numbers(f, e))
-		return 0;
-	cJSON_Delete(f->root);
-	return -1;
-}
-
 int glb_open(struct glb *f, const char *name, const struct file_map *map, struct err *e)
 {
 	const unsigned char *json;
 	size_t length, at = GLB_HEADER;
 
 	*f = (struct glb){.name = name, .map = map, .bin = map->data};
-	if (!glb_is(map) && path_ends(name, ".gltf"))
-		return open_gltf(f, e);
 	if (map->len < GLB_HEADER)
 		return err_file(e, name, "%zu bytes, the header has %d", map->len, GLB_HEADER);
 	if (!glb_is(map))
@@ -129,7 +75,6 @@ int glb_open(struct glb *f, const char *name, const struct file_map *map, struct
 void glb_close(struct glb *f)
 {
 	cJSON_Delete(f->root);
-	file_unmap(&f->numbers);
 }
 
 /* A whole number of an object from 0 on, at most 2^53. */

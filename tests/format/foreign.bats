@@ -49,6 +49,7 @@ refused() {
 		echo x >"$file"
 		no_splats "$file" "$reason"
 	done <<-'END'
+		a.gltf|a glTF of several files, not a .glb: export the scene as a .glb or .ply where it was made
 		a.ssproj|a project of SuperSplat, not a .ply: open it there, and export the scene as a .ply
 		a.USDZ|a scene of USD, not a .ply: export the scene as a .ply where it was made
 		a.html|a page of a viewer, not a .ply: export the scene as a .ply where it was made

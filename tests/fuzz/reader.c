@@ -161,11 +161,6 @@ static void try_named(const char *folder, const char *name)
 	try_scene(path);
 }
 
-static void try_gltf(const char *path)
-{
-	try_named(path, "scene.gltf");
-}
-
 static void try_sog(const char *path)
 {
 	try_named(path, "meta.json");
@@ -318,7 +313,6 @@ static const struct target {
 	{"detections", try_detections, {0}, 0},
 	{"features", try_features, {0}, 0},
 	{"glb", try_scene, {0}, 0},
-	{"gltf", try_gltf, {"scene.gltf", "numbers.bin"}, 0},
 	{"image", try_image, {0}, 0},
 	{"lifted", try_lifted, {0}, 0},
 	{"masks", try_masks, {0}, 0},

@@ -184,10 +184,6 @@ seed masks some-masks.jsonl
 seed_cut model 800 some-model.safetensors
 gs-transform -q -o few.glb few.ply
 seed glb few.glb "$golden/glb/eight.glb"
-json=$(od -An -t u4 -j 12 -N 4 few.glb)
-tail -c +21 few.glb | head -c "$json" | jq -c '.buffers[0].uri = "numbers.bin"' >scene.gltf
-tail -c +$((29 + json)) few.glb >numbers.bin
-folder gltf scene.gltf numbers.bin
 seed npy response/view_000/*.npy
 seed npz "$golden"/npz/*.npz
 cp "$here/formats/encoders/parser_default.safetensors" parser.safetensors
@@ -238,7 +234,7 @@ for target in "$dir"/*/; do
 	points) set -- colmap.c ;;
 	regions) set -- proposed.c ;;
 	ply) set -- ply.c plyfile.c plypacked.c ;;
-	glb | gltf) set -- glb.c glb_container.c ;;
+	glb) set -- glb.c glb_container.c ;;
 	colmap) set -- colmap.c colmap_text.c ;;
 	sog) set -- sog.c archive.c ;;
 	spz) set -- spz.c spz_container.c ;;
