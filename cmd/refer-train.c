@@ -24,10 +24,6 @@ static const struct cli_option table[] = {
 		"start from the objects of this lifted model of refer-lift"),
 	{"init-iterations", 0, CLI_INT, &options.trainer.warm, "N",
 		"how many of the steps fit these objects, at the start (default 500)", 1, 100000000},
-	{"hold-out", 0, CLI_REAL, &options.trainer.hold_out, "F",
-		"keep this share of the masks to judge by, and stop in time (default 0)", 0, 0.9},
-	{"patience", 0, CLI_INT, &options.patience, "N",
-		"stop after N evaluations that were no better, one every 250 steps (default 8)", 1, 1000000},
 	CLI_ONE_OF("interaction", &interaction, REFER_INTERACTION_CHOICES,
 		"how words act on Gaussians (default pcmi)"),
 	CLI_ONE_OF("similarity", &similarity, REFER_SIMILARITY_CHOICES,
@@ -88,10 +84,7 @@ static void check_options(const struct cli *c)
 		cli_usage(c, "--scene, --weights, --text and --masks are required");
 	if (!f->lifted && o->warm)
 		cli_usage(c, "--init-iterations needs --init");
-	if (o->hold_out <= 0 && options.patience)
-		cli_usage(c, "--patience needs --hold-out");
 	o->warm = f->lifted && !o->warm ? 500 : o->warm;
-	options.patience = options.patience ? options.patience : 8;
 	if (o->interaction == REFER_PCMI_PROJ && o->similarity == REFER_COSINE)
 		cli_usage(c, "--similarity cosine does not go with --interaction pcmi-proj");
 	if (is_stdout && options.is_resumed)

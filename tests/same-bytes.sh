@@ -42,13 +42,13 @@ models() {
 	run lift refer-lift -q "${from[@]}" -o lifted
 	run lift-masks refer-lift -q "${from[@]}" --names masks -o lifted-masks
 	run train refer-train -q "${from[@]}" --iterations "$steps" --checkpoint 25 --log train.log -o trained
-	run held refer-train -q "${from[@]}" --iterations "$steps" --hold-out 0.2 --init lifted --init-iterations 20 --log held.log -o held
+	run warm refer-train -q "${from[@]}" --iterations "$steps" --init lifted --init-iterations 20 --log warm.log -o warm
 	for way in none attention attention+fp add pcmi-proj; do
 		run "train-$way" refer-train -q "${from[@]}" --iterations 12 --interaction $way --contrast dot --negatives 0 --share 0 \
 			--precision f32 -o "trained-$way"
 	done
 	run train-cosine refer-train -q "${from[@]}" --iterations 12 --similarity cosine --batch 2 --tolerance 0.01 -o trained-cosine
-	for model in lifted lifted-masks trained held trained-{none,attention,attention+fp,add,pcmi-proj,cosine}; do
+	for model in lifted lifted-masks trained warm trained-{none,attention,attention+fp,add,pcmi-proj,cosine}; do
 		run "check-$model" gs-check $model
 		run "render-$model" refer-render -q "${ask[@]}" --model $model --split all --scale "$scale" -o "render-$model.jsonl"
 		run "locate-$model" refer-locate -q "${ask[@]}" --model $model -o "locate-$model.jsonl"
@@ -84,7 +84,7 @@ synthetic() {
 	done
 	cp masks-ciou masks
 	models 60 1
-	for model in lifted trained held; do
+	for model in lifted trained warm; do
 		run "score-$model" miou-score --truth truth.jsonl --predicted-views --parses parses.jsonl --bootstrap 50 --json "render-$model.jsonl"
 		run "text-score-$model" miou-score --truth truth.jsonl --compare render-lifted-masks.jsonl --bootstrap 50 "render-$model.jsonl"
 		run "box-score-$model" miou-score --boxes --truth boxes.jsonl "locate-$model.jsonl"

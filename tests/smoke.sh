@@ -40,7 +40,7 @@ done <<-'END'
 	refer-locate -q --scene scene --text text.safetensors --model lifted.safetensors -o boxes2.jsonl
 	refer-locate -q --all --scene scene --model lifted.safetensors --ply labelled.ply --each objects -o labels.jsonl
 	mask-export -q --scene scene --png tree -o coco.json masks.jsonl
-	refer-train -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl --init lifted.safetensors --init-iterations 2 --iterations 4 --hold-out 0.2 -o model3.safetensors
+	refer-train -q --scene scene --weights weights --text text.safetensors --masks masks.jsonl --init lifted.safetensors --init-iterations 2 --iterations 4 -o model3.safetensors
 	text-parse -q -o parses.jsonl text.safetensors
 	refer-serve -q --stdio --encoder encoder kitchen
 	miou-score --truth truth.jsonl pred.jsonl

@@ -63,9 +63,9 @@ void report_steps(struct jsontext *to, const char *run)
 	jsontext_close(to, ']');
 }
 
-/* The lines that have the first key, or lack it where `is_held` is 0: a list of these numbers of each. */
-static int put_lines(struct jsontext *to, const char *name, const char *path, int is_held,
-	const char *const *keys, struct err *e)
+/* A list of these numbers of each line. */
+static int put_lines(
+	struct jsontext *to, const char *name, const char *path, const char *const *keys, struct err *e)
 {
 	SCOPED_BY(jsonl_close) struct jsonl j = {0};
 	cJSON *line;
@@ -75,14 +75,12 @@ static int put_lines(struct jsontext *to, const char *name, const char *path, in
 		return -1;
 	jsontext_open(to, name, '[');
 	while ((got = jsonl_next(&j, &line, e)) > 0) {
-		if (cJSON_HasObjectItem(line, "held_iou") == is_held) {
-			jsontext_open(to, NULL, '[');
-			for (const char *const *key = keys; *key; key++) {
-				const cJSON *value = cJSON_GetObjectItemCaseSensitive(line, *key);
-				jsontext_number(to, NULL, cJSON_IsNumber(value) ? value->valuedouble : NAN);
-			}
-			jsontext_close(to, ']');
+		jsontext_open(to, NULL, '[');
+		for (const char *const *key = keys; *key; key++) {
+			const cJSON *value = cJSON_GetObjectItemCaseSensitive(line, *key);
+			jsontext_number(to, NULL, cJSON_IsNumber(value) ? value->valuedouble : NAN);
 		}
+		jsontext_close(to, ']');
 		cJSON_Delete(line);
 	}
 	jsontext_close(to, ']');
@@ -91,9 +89,8 @@ static int put_lines(struct jsontext *to, const char *name, const char *path, in
 
 int report_losses(struct jsontext *to, const char *run, struct err *e)
 {
-	static const char *const stages[] = {"stage1", "stage2"},
-				 *const own[] = {"iteration", "bce", "contrast", "loss", NULL},
-				 *const held[] = {"iteration", "held_bce", "held_iou", NULL};
+	static const char *const stages[] = {"stage1", "stage2"}, *const own[] = {"iteration", "bce",
+									  "contrast", "loss", NULL};
 
 	jsontext_open(to, "losses", '[');
 	for (size_t k = 0; k < 2; k++) {
@@ -103,7 +100,7 @@ int report_losses(struct jsontext *to, const char *run, struct err *e)
 			continue;
 		jsontext_open(to, NULL, '{');
 		jsontext_string(to, "stage", stages[k]);
-		if (put_lines(to, "lines", path, 0, own, e) || put_lines(to, "held", path, 1, held, e))
+		if (put_lines(to, "lines", path, own, e))
 			return -1;
 		jsontext_close(to, '}');
 	}

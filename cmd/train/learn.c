@@ -39,8 +39,7 @@ static int start(struct learning *l, const struct report *to, struct err *e)
 		return e->code == ERR_FORMAT ? err_prefix(e, o->from.weights) : -1;
 	report_note(to, 1, "%zu of %zu Gaussians share %zu features, %.1f a pixel", l->trainer.learning,
 		d->scene.splats.n, l->trainer.rows.n, trainer_weights(&l->trainer));
-	report_note(to, 1, "%zu views, %zu sentences, %zu pairs, %zu more held out", d->views.n, d->sentences,
-		d->pairs, d->held);
+	report_note(to, 1, "%zu views, %zu sentences, %zu pairs", d->views.n, d->sentences, d->pairs);
 	if (l->trainer.views.filed)
 		report_note(to, 1, "the weights of %zu views are in a file, %.0f MiB", l->trainer.views.filed,
 			(double)l->trainer.views.file.end / MEBIBYTE);
@@ -67,15 +66,6 @@ static int resume(struct learning *l, const struct report *to, struct err *e)
 	return 0;
 }
 
-/* Whether training is over: all steps are done, or the held-out masks say so. */
-static int is_over(const struct learning *l)
-{
-	const struct learning_options *o = l->options;
-	const struct train_state *t = &l->trainer.state;
-
-	return t->iteration >= o->iterations || (t->best.values && t->best.since >= o->patience);
-}
-
 /* What is due after a step: lines of the log, a checkpoint. */
 static int record(struct learning *l, const struct step_losses *last, struct err *e)
 {
@@ -83,18 +73,14 @@ static int record(struct learning *l, const struct step_losses *last, struct err
 	struct train_state *t = &l->trainer.state;
 	const long done = t->iteration;
 
-	if (divergence_check(&l->divergence, t, last, is_over(l), e))
+	if (divergence_check(&l->divergence, t, last, done >= o->iterations, e))
 		return err_prefix(e, file_name(o->output));
 	if (done % TRAINLOG_EVERY == 0)
 		snprintf(l->note, sizeof l->note, "loss %.4f", t->sum.total / TRAINLOG_EVERY);
 	if (trainlog_step(&l->log, t, e))
 		return -1;
-	if (t->best.values && (done % TRAINER_EVALUATE == 0 || done == o->iterations)) {
-		struct held_out_score score;
-		if (trainer_evaluate(&l->trainer, &score, e) || trainlog_put_held(&l->log, done, &score, e))
-			return -1;
-	}
-	if (!o->checkpoint || done % o->checkpoint || is_over(l) || !divergence_is_good(&l->divergence, t))
+	if (!o->checkpoint || done % o->checkpoint || done >= o->iterations ||
+		!divergence_is_good(&l->divergence, t))
 		return 0;
 	const int bad = checkpoint_write(t, o->checkpoint_path, &l->of, e);
 	l->is_own |= !bad;
@@ -123,7 +109,7 @@ static int take_steps(struct learning *l, const struct report *to, struct err *e
 	int bad = 0;
 
 	report_start(to, "steps", (double)(o->iterations - begin));
-	while (!is_over(l) && !bad) {
+	while (t->iteration < o->iterations && !bad) {
 		if (o->stop && *o->stop) {
 			bad = stop(l, e);
 			break;
@@ -133,9 +119,6 @@ static int take_steps(struct learning *l, const struct report *to, struct err *e
 		report_step(to, (double)(t->iteration - begin), *l->note ? l->note : NULL);
 	}
 	report_end(to);
-	if (!bad && t->best.values)
-		report_note(to, 1, "%ld steps, the held-out masks were answered best after %ld: IoU %.4f",
-			t->iteration, t->best.iteration, t->best.score);
 	return bad;
 }
 

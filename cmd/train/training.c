@@ -172,24 +172,9 @@ static int check_masks(
 	return -(bad || left_out_check(&l, t->sentences, from->masks, from->scene, to, e));
 }
 
-static int hold_out(
-	struct training *t, const struct training_files *from, const struct trainer_options *o, struct err *e)
-{
-	if (o->hold_out > 0 && held_out_choose(t->views.views, t->views.n, t->objects, t->sentences,
-				       o->hold_out, (uint64_t)o->seed, e))
-		return e->code == ERR_FORMAT ? err_prefix(e, file_name(from->masks)) : -1;
-	for (size_t v = 0; v < t->views.n; v++) {
-		t->pairs += (size_t)t->views.views[v].count;
-		t->held += (size_t)t->views.views[v].held;
-	}
-	return 0;
-}
-
 static int read_all(struct training *t, const struct training_files *from, const struct trainer_options *o,
 	const struct report *to, struct err *e)
 {
-	size_t pairs = 0;
-
 	if (scene_read(&t->scene, from->scene, e))
 		return -1;
 	splats_keep_means(&t->scene.splats);
@@ -204,12 +189,12 @@ static int read_all(struct training *t, const struct training_files *from, const
 			&t->masks, t->refs, t->object_names, t->sentences, t->views.views, t->views.n, e))
 		return -1;
 	for (size_t v = 0; v < t->views.n; v++)
-		pairs += (size_t)t->views.views[v].count;
-	if (!pairs)
+		t->pairs += (size_t)t->views.views[v].count;
+	if (!t->pairs)
 		return err_set(e, ERR_FORMAT,
 			"%s: no mask of a training view is of a training sentence of %s",
 			file_name(from->masks), file_name(from->text));
-	if (check_masks(t, from, to, e) || read_lifted(t, from, e) || hold_out(t, from, o, e))
+	if (check_masks(t, from, to, e) || read_lifted(t, from, e))
 		return -1;
 	make_checksum(t);
 	return 0;
@@ -262,8 +247,7 @@ struct checkpoint_of training_identity(
 int training_write(const struct training *t, const struct trainer *learned, const struct trainer_options *o,
 	enum precision precision, const char *path, const char *options, long long seed, struct err *e)
 {
-	long iteration;
-	const float *values = trainer_result(learned, &iteration);
+	const float *values = learned->state.values;
 	const struct model m = {.layout = learned->layout,
 		.similarity = o->similarity,
 		.query = o->query,
@@ -283,7 +267,7 @@ int training_write(const struct training *t, const struct trainer *learned, cons
 
 	if (!m.features)
 		return -1;
-	snprintf(text, sizeof text, "--iterations %ld --precision %s %s", iteration,
+	snprintf(text, sizeof text, "--iterations %ld --precision %s %s", learned->state.iteration,
 		precision_name(precision), options);
 	int bad = model_write(&m, path, text, seed, e);
 	free(m.features);

@@ -63,18 +63,17 @@ struct training {
 	struct supervision masks;
 	size_t test_masks;    /* masks of test views, not used */
 	size_t pairs;	      /* (view, sentence) pairs to learn from */
-	size_t held;	      /* those that are held out */
 	struct lifted lifted; /* for a warm start; else empty */
 	uint32_t checksum;    /* of everything that training depends on but its options */
 };
 
-/* What to read, and what to hold out of it. */
+/* What to read. */
 struct training_files {
 	const char *scene, *weights, *text, *masks;
 	const char *lifted; /* NULL: no warm start */
 };
 
-/* Of the options: what is held out, the seed, and what stands for a sentence. */
+/* Of the options: what stands for a sentence. */
 int training_read(struct training *t, const struct training_files *from, const struct trainer_options *o,
 	const struct report *to, struct err *e);
 /* What a checkpoint of it is of. */
@@ -109,7 +108,6 @@ struct learning_options {
 	long long checkpoint;		   /* one every so many steps; 0: never */
 	const volatile sig_atomic_t *stop; /* not 0: to be left after this step, with a checkpoint */
 	long long memory;		   /* MiB for the views' weights */
-	long long patience;		   /* evaluations that were no better, until it stops */
 	struct trainer_options trainer;
 };
 

@@ -75,12 +75,6 @@ int trainlog_step(struct trainlog *l, struct train_state *t, struct err *e)
 	return 0;
 }
 
-int trainlog_put_held(struct trainlog *l, long iteration, const struct held_out_score *score, struct err *e)
-{
-	return put(l, e, "{\"iteration\":%ld,\"held_bce\":%.9g,\"held_iou\":%.9g}\n", iteration, score->bce,
-		score->iou);
-}
-
 int trainlog_put_fit(
 	struct trainlog *l, long iteration, size_t gaussians, double loss, double psnr, struct err *e)
 {

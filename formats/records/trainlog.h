@@ -3,7 +3,6 @@
 
 #include "base/err.h"
 #include "base/file.h"
-#include "train/held_out.h"
 #include "train/train.h"
 
 struct trainlog {
@@ -20,9 +19,6 @@ enum { TRAINLOG_EVERY = 100 };
 
 /* After each step: every TRAINLOG_EVERY steps a line of mean losses, and the state's sum begins anew. */
 int trainlog_step(struct trainlog *l, struct train_state *t, struct err *e);
-
-/* A line of what the held-out masks say. */
-int trainlog_put_held(struct trainlog *l, long iteration, const struct held_out_score *score, struct err *e);
 
 /* A line of gs-train: means over the steps since the last. */
 int trainlog_put_fit(

@@ -8,25 +8,24 @@
 #include <math.h>
 #include <stdio.h>
 
-enum { ARRAYS = 4 };
+enum { ARRAYS = 3 };
 
-/* The last one, and best_score, where something is held out and was evaluated. */
-static const char *const names[ARRAYS] = {"values", "first_moment", "second_moment", "best"};
+static const char *const names[ARRAYS] = {"values", "first_moment", "second_moment"};
 
 void checkpoint_identity(char text[CHECKPOINT_IDENTITY], const struct trainer_options *o, uint32_t inputs)
 {
 	char temperature[NUMBER_SIZE], lambda[NUMBER_SIZE], features[NUMBER_SIZE], mlps[NUMBER_SIZE],
-		tolerance[NUMBER_SIZE], share[NUMBER_SIZE], hold_out[NUMBER_SIZE];
+		tolerance[NUMBER_SIZE], share[NUMBER_SIZE];
 
 	snprintf(text, CHECKPOINT_IDENTITY,
 		"--interaction %s --similarity %s --query %s --contrast %s --feature-width %lld --temperature %s --lambda %s --feature-rate %s --mlp-rate %s "
-		"--batch %lld --negatives %lld --tolerance %s --share %s --init-iterations %lld --hold-out %s --seed %lld, inputs %08x",
+		"--batch %lld --negatives %lld --tolerance %s --share %s --init-iterations %lld --seed %lld, inputs %08x",
 		refer_interaction_name(o->interaction), refer_similarity_name(o->similarity),
 		refer_query_name(o->query), refer_contrast_name(o->contrast), o->feature_width,
 		number_text(temperature, o->temperature), number_text(lambda, o->lambda),
 		number_text(features, o->rates.features), number_text(mlps, o->rates.mlps), o->batch,
 		o->negatives, number_text(tolerance, o->tolerance), number_text(share, o->share), o->warm,
-		number_text(hold_out, o->hold_out), o->seed, (unsigned)inputs);
+		o->seed, (unsigned)inputs);
 }
 
 char *checkpoint_path(const char *model, struct err *e)
@@ -42,8 +41,7 @@ char *checkpoint_path(const char *model, struct err *e)
 int checkpoint_write(
 	const struct train_state *t, const char *path, const struct checkpoint_of *of, struct err *e)
 {
-	const int has_best = t->best.values && t->best.iteration;
-	const float *arrays[ARRAYS] = {t->values, t->m, t->v, t->best.values};
+	const float *arrays[ARRAYS] = {t->values, t->m, t->v};
 	const double losses[3] = {t->sum.bce, t->sum.contrast, t->sum.total};
 	struct arrays_out out;
 
@@ -52,12 +50,7 @@ int checkpoint_write(
 	arrays_out_text(&out, "identity", of->identity);
 	origin_put(&out, &of->origin);
 	arrays_out_put(&out, st_vector("losses", ST_F64, 3, losses));
-	if (has_best) {
-		arrays_out_text(&out, "best_iteration", arrays_out_print(&out, "%ld", t->best.iteration));
-		arrays_out_text(&out, "evaluations_since", arrays_out_print(&out, "%ld", t->best.since));
-		arrays_out_put(&out, st_vector("best_score", ST_F64, 1, &t->best.score));
-	}
-	for (int i = 0; i < ARRAYS - !has_best; i++)
+	for (int i = 0; i < ARRAYS; i++)
 		arrays_out_put(&out, st_vector(names[i], ST_F32, (int64_t)t->count, arrays[i]));
 	return arrays_out_end(&out);
 }
@@ -102,26 +95,19 @@ static int check_training(const struct safetensors *st, const struct checkpoint_
 static int read_state(
 	struct train_state *t, const struct safetensors *st, const struct checkpoint_of *of, struct err *e)
 {
-	float *arrays[] = {t->values, t->m, t->v};
+	float *arrays[ARRAYS] = {t->values, t->m, t->v};
 	double losses[3];
 	struct arrays_in in;
 
 	arrays_in_begin(&in, st, "refer.checkpoint", 1, e);
 	in.bad = in.bad || check_training(st, of, e);
 	const long iteration = read_count(&in, "iteration", 1, LONG_MAX);
-	for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++)
+	for (size_t i = 0; i < ARRAYS; i++)
 		arrays_in_fill(&in, names[i], arrays[i], t->count);
 	for (size_t i = 0; i < t->count && !in.bad; i++)
 		if (t->v[i] < 0)
 			in.bad = err_file(e, st->path, "tensor 'second_moment': item %zu is negative", i);
 	read_numbers(&in, "losses", losses, 3);
-	/* The best state, which a checkpoint has from the first evaluation on. */
-	if (t->best.values && safetensors_meta(st, "best_iteration")) {
-		t->best.iteration = read_count(&in, "best_iteration", 1, iteration);
-		t->best.since = read_count(&in, "evaluations_since", 0, LONG_MAX);
-		read_numbers(&in, "best_score", &t->best.score, 1);
-		arrays_in_fill(&in, "best", t->best.values, t->count);
-	}
 	if (in.bad)
 		return -1;
 	t->sum = (struct step_losses){losses[0], losses[1], losses[2]};

@@ -208,20 +208,19 @@ struct step_others train_order_others(
 	return (struct step_others){list - own, own + c->negatives};
 }
 
-int train_state_init(struct train_state *t, const struct refer_layout *l, size_t gaussians, int keeps_best,
-	uint64_t seed, struct err *e)
+int train_state_init(
+	struct train_state *t, const struct refer_layout *l, size_t gaussians, uint64_t seed, struct err *e)
 {
 	struct rng r;
 
 	*t = (struct train_state){.parameters = (l->count + 15) / 16 * 16};
 	t->count = t->parameters + panels_padded(gaussians) * (size_t)l->feature_width;
-	t->values = mem_zalloc(t->count, (keeps_best ? 5 : 4) * sizeof(float), "training state", e);
+	t->values = mem_zalloc(t->count, 4 * sizeof(float), "training state", e);
 	if (!t->values)
 		return -1;
 	t->gradient = t->values + t->count;
 	t->m = t->gradient + t->count;
 	t->v = t->m + t->count;
-	t->best.values = keeps_best ? t->v + t->count : NULL;
 	rng_seed(&r, seed, STREAM_INIT);
 	refer_init(l, t->values, &r);
 	return 0;
@@ -236,20 +235,6 @@ void train_state_free(struct train_state *t)
 float *train_state_x(const struct train_state *t)
 {
 	return t->values + t->parameters;
-}
-
-void train_evaluated(struct train_state *t, double score)
-{
-	struct train_best *best = &t->best;
-
-	if (best->iteration && !(score > best->score)) {
-		best->since++;
-		return;
-	}
-	memcpy(best->values, t->values, sizeof *t->values * t->count);
-	best->iteration = t->iteration;
-	best->score = score;
-	best->since = 0;
 }
 
 void train_adam(struct train_state *t, const struct train_rates *rates)

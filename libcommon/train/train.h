@@ -11,9 +11,8 @@
 struct train_view {
 	struct view_weights weights;
 	int count;
-	int *sentences;	       /* (count + held) indices of sentences */
-	const uint8_t **masks; /* (count + held) of weights.pixels each, as bits (mask/bits.h) */
-	int held;	       /* further sentences and masks that are not learned from (train/held_out.h) */
+	int *sentences;	       /* (count) indices of sentences */
+	const uint8_t **masks; /* (count) of weights.pixels each, as bits (mask/bits.h) */
 };
 
 /* Gaussians that can learn: those that carry all but `tolerance` of the weight (scene_gaussians) that they
@@ -71,14 +70,6 @@ size_t train_order_next(struct train_order *o, long iteration);
 struct step_others train_order_others(
 	struct train_order *o, long iteration, const struct step_target *targets, int count);
 
-/* The best state so far by the masks that were held out. */
-struct train_best {
-	float *values;	/* (count) as train_state's; NULL where nothing is held out */
-	long iteration; /* steps that it had; 0: nothing was evaluated yet */
-	double score;	/* the higher the better */
-	long since;	/* evaluations since then */
-};
-
 /* Parameters and referring features in one slab with gradient and both Adam moments alike; a checkpoint is
  * the slab, the iteration and the sum. */
 struct train_state {
@@ -86,21 +77,16 @@ struct train_state {
 	float *values, *gradient, *m, *v; /* (count): parameters, then x in panels */
 	long iteration;			  /* steps done */
 	struct step_losses sum;		  /* of the steps since the caller last set it to zero */
-	struct train_best best;
 };
 
-/* keeps_best: 0, or 1 for room for the best state. */
-int train_state_init(struct train_state *t, const struct refer_layout *l, size_t gaussians, int keeps_best,
-	uint64_t seed, struct err *e);
+int train_state_init(
+	struct train_state *t, const struct refer_layout *l, size_t gaussians, uint64_t seed, struct err *e);
 void train_state_free(struct train_state *t);
 float *train_state_x(const struct train_state *t);
 
 struct train_rates {
 	double features, mlps; /* Adam's */
 };
-
-/* An evaluation of the state as it is: it becomes the best one where its score is higher than any before. */
-void train_evaluated(struct train_state *t, double score);
 
 /* Adam on all parameters with the gradient that is there; iteration + 1. */
 void train_adam(struct train_state *t, const struct train_rates *rates);

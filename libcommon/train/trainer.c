@@ -102,17 +102,14 @@ static int init(
 {
 	const uint64_t seed = (uint64_t)o->seed;
 	const struct train_contrast contrast = {from->sentences, (size_t)o->negatives, from->objects};
-	struct view_source views;
 
 	if (make_rows(t, from, o, e) || init_step(t, from, o, e) ||
 		train_order_init(&t->order, t->views.views, t->views.n, (int)o->batch, &contrast, seed, e) ||
-		train_state_init(&t->state, &t->layout, t->rows.n, o->hold_out > 0, seed, e) ||
+		train_state_init(&t->state, &t->layout, t->rows.n, seed, e) ||
 		(t->warm_steps && init_features(t, seed, e)))
 		return -1;
 	t->order.begin = t->warm_steps;
-	views = row_views_source(&t->views);
-	return o->hold_out > 0 ? held_out_init(&t->held, &views, from->objects, from->sentences, t->rows.n, e)
-			       : 0;
+	return 0;
 }
 
 int trainer_init(
@@ -133,7 +130,6 @@ void trainer_free(struct trainer *t)
 	train_order_free(&t->order);
 	train_state_free(&t->state);
 	warm_start_free(&t->warm);
-	held_out_free(&t->held);
 	octree_free(&t->octree);
 	rows_free(&t->rows);
 	mem_free_all(t->ids, t->position, t->counts);
@@ -185,20 +181,4 @@ int trainer_step(struct trainer *t, struct step_losses *losses, struct err *e)
 		left * t->rates.features, left * WARM_START_MLP_RATE * t->rates.mlps};
 	*losses = train_step(&t->state, t->step, &t->warm.order, &rates, &t->warm.view.weights);
 	return 0;
-}
-
-int trainer_evaluate(struct trainer *t, struct held_out_score *score, struct err *e)
-{
-	if (held_out_evaluate(&t->held, t->step, t->state.values, train_state_x(&t->state), score, e))
-		return -1;
-	train_evaluated(&t->state, score->iou);
-	return 0;
-}
-
-const float *trainer_result(const struct trainer *t, long *iteration)
-{
-	const int is_best = t->state.best.iteration > 0;
-
-	*iteration = is_best ? t->state.best.iteration : t->state.iteration;
-	return is_best ? t->state.best.values : t->state.values;
 }

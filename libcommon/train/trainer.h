@@ -6,7 +6,6 @@
 #include "field/octree.h"
 #include "field/rows.h"
 #include "geom/camera.h"
-#include "train/held_out.h"
 #include "train/row_views.h"
 #include "train/train.h"
 #include "train/warm_start.h"
@@ -23,7 +22,6 @@ struct trainer_options {
 	long long batch; /* most sentences in a step */
 	long long negatives; /* train_order's */
 	long long warm;	     /* steps of a warm start; 0: none */
-	double hold_out;     /* share of the supervision that is held out, which is the source's to do */
 	struct train_rates rates;
 	long long seed;
 };
@@ -72,7 +70,6 @@ struct trainer {
 	struct train_state state;
 	long warm_steps; /* the first of all */
 	struct warm_start warm;
-	struct held_out held;
 };
 
 /* ERR_FORMAT, without a file name, where no Gaussian has weight. */
@@ -83,18 +80,9 @@ void trainer_free(struct trainer *t);
 /* Weights over rows that a pixel has on average. */
 double trainer_weights(const struct trainer *t);
 
-/* (rows.n, d_r) the features of a slab of trainer_result, row-major; free() them. NULL with *e when memory is
- * out. */
+/* (rows.n, d_r) the features of a slab (train_state's values), row-major; free() them. NULL with *e when
+ * memory is out. */
 float *trainer_features(const struct trainer *t, const float *values, struct err *e);
 
 /* The next step, train_step's. Returns 0, or -1 with *e set where a view cannot be read. */
 int trainer_step(struct trainer *t, struct step_losses *losses, struct err *e);
-
-enum { TRAINER_EVALUATE = 250 }; /* steps from one evaluation to the next */
-
-/* Scores the held-out masks, and keeps the state where it is the best so far. Returns as trainer_step. */
-int trainer_evaluate(struct trainer *t, struct held_out_score *score, struct err *e);
-
-/* What is learned, as it is or, where masks are held out, as it was when they were answered best: the slab
- * (train_state's values), and the steps that it had. */
-const float *trainer_result(const struct trainer *t, long *iteration);

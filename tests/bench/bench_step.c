@@ -157,7 +157,7 @@ static void problem_make(struct problem *p, size_t gaussians)
 	rng_seed(&r, 1, 1);
 	p->gaussians = gaussians;
 	refer_layout_init(&p->layout, REFER_PCMI, TEXT, FEATURE);
-	if (train_state_init(&p->state, &p->layout, gaussians, 0, 1, &e)) {
+	if (train_state_init(&p->state, &p->layout, gaussians, 1, &e)) {
 		fprintf(stderr, "bench_step: %s\n", e.message);
 		exit(4);
 	}

@@ -29,7 +29,6 @@ setup_file() {
 	printf 'refer-lift --scene <run>' >run/log/lift.command
 	printf 'miou-score --json --truth %s' "$PWD/truth.jsonl" >run/log/score.command
 	printf '{"iteration":%d,"bce":%s,"contrast":0.5,"loss":1}\n' 100 2 200 1.5 >run/stage1/train.log
-	printf '{"iteration":200,"held_bce":0.1,"held_iou":0.75}\n' >>run/stage1/train.log
 	"$BIN/refer-report" -q run
 	data run/report.html >data.json
 }
@@ -76,7 +75,7 @@ not() { ! "$@"; }
 
 @test "times, losses and settings are those of the run" {
 	jq -e '.steps == [{"step": "lift", "seconds": 11.49, "mib": 272.6, "command": "refer-lift --scene <run>"}]' data.json
-	jq -e '.losses == [{"stage": "stage1", "lines": [[100, 2, 0.5, 1], [200, 1.5, 0.5, 1]], "held": [[200, 0.1, 0.75]]}]' data.json
+	jq -e '.losses == [{"stage": "stage1", "lines": [[100, 2, 0.5, 1], [200, 1.5, 0.5, 1]]}]' data.json
 	jq -e '.settings[] | select(.file == "lifted/model.safetensors") | .metadata.format == "refer.lifted" and .metadata.tool == "refer-lift"' data.json
 	jq -e 'all(.settings[].metadata | keys[]; startswith("crc32") | not)' data.json
 }

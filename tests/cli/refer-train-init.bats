@@ -1,5 +1,5 @@
 #!/usr/bin/env bats
-# refer-train from a lifted model, and with masks held out. All else is in refer-train.bats.
+# refer-train from a lifted model. All else is in refer-train.bats.
 
 load refer-train
 
@@ -25,7 +25,7 @@ lifted() {
 	cmp m1 m3
 	train --init - --init-iterations 6 -o piped <l
 	cmp m1 piped
-	[[ "$(meta m1 options)" == *" --init-iterations 6 --hold-out 0 "* ]]
+	[[ "$(meta m1 options)" == *" --init-iterations 6 "* ]]
 	train -o cold
 	not cmp -s m1 cold
 	train --init l -o m
@@ -70,48 +70,4 @@ lifted() {
 	[[ $output == "refer-train: l: "* ]]
 	: >l
 	refuses 3 "l: 0 bytes, too short for a safetensors file" --init l
-}
-
-@test "--hold-out: evaluations in the log, the best state in the model, and a stop" {
-	held() { train --interaction none --hold-out 0.3 --patience 1 --feature-rate 0.02 --mlp-rate 0.0008 --iterations 20000 "$@"; }
-	held -v --log log -o m 2>err
-	grep -qx 'refer-train: 4 views, 3 sentences, 8 pairs, 4 more held out' err
-	best=$(jq -s 'map(select(.held_iou)) | max_by(.held_iou).iteration' log)
-	steps=$(jq -s 'last.iteration' log)
-	[ "$steps" = $((best + 250)) ]
-	[ "$steps" -lt 20000 ]
-	grep -qE "^refer-train: $steps steps, the held-out masks were answered best after $best: IoU 0\.[0-9]{4}$" err
-	[[ "$(meta m options)" == "--iterations $best "*" --hold-out 0.3 "* ]]
-	jq -se 'map(select(.held_iou)) | all(.[]; .held_bce > 0 and .held_iou >= 0 and .held_iou <= 1) and .[0].iteration == 250' log
-	for n in 1 2 3; do held --threads $n --iterations "$best" --log log$n -o best; cmp m best; done
-	cmp log1 log2
-	cmp log1 log3
-	# The last step is evaluated too.
-	train --interaction none --hold-out 0.3 --iterations 90 --log log -o last
-	[ "$(jq -r 'select(.held_iou).iteration' log)" = 90 ]
-	# Another seed holds out others.
-	train --interaction none --hold-out 0.3 --iterations 90 --seed 2 -o other
-	not cmp -s last other
-}
-
-@test "a training with held-out masks goes on to the same model and log, and stops at the same step" {
-	held() { train --interaction none --hold-out 0.3 --patience 3 --feature-rate 0.02 --mlp-rate 0.0008 --iterations 5000 --checkpoint 200 -o "$@"; }
-	held whole --log log
-	"$BIN/refer-train" --scene scene --weights weights --text text.safetensors --masks masks.jsonl --interaction none --hold-out 0.3 \
-		--patience 3 --feature-rate 0.02 --mlp-rate 0.0008 --iterations 5000 --checkpoint 200 -o part --log part.log &
-	pid=$!
-	for ((i = 0; i < 1000; i++)); do [ "$(meta part.checkpoint best_iteration 2>none)" -gt 0 ] 2>none && break; sleep 0.01; done
-	kill -KILL $pid
-	wait $pid || true
-	[ -e part.checkpoint ]
-	[ ! -e part ]
-	held part --log part.log --resume
-	cmp whole part
-	cmp log part.log
-	[ ! -e part.checkpoint ]
-}
-
-@test "nothing to hold out" {
-	head -n 1 masks.jsonl >one.jsonl
-	refuses 3 "one.jsonl: one pair of a view and an object, none to hold out" --hold-out 0.5 --masks one.jsonl
 }

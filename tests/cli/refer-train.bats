@@ -11,7 +11,7 @@ load refer-train
 	"$BIN/gs-check" out.safetensors
 	[ "$(meta out.safetensors gaussians)" = 1000 ]
 	[[ "$(meta out.safetensors options)" == "--iterations 8 --precision u8 --interaction pcmi --similarity dot --query words --contrast cosine --feature-width 16 \
---temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --negatives 12 --tolerance 0 --share 0.04 --init-iterations 0 --hold-out 0 --seed 1, inputs "???????? ]]
+--temperature 0.1 --lambda 0.02 --feature-rate 0.0025 --mlp-rate 0.0001 --batch 1 --negatives 12 --tolerance 0 --share 0.04 --init-iterations 0 --seed 1, inputs "???????? ]]
 }
 
 @test "--threads 1, 2 and 3 give the same bytes" {
@@ -21,8 +21,8 @@ load refer-train
 	cmp log1 log2
 }
 
-@test "--memory: views that are read from a file give the same bytes, with held-out masks too, and nothing is left" {
-	for more in "--batch 2" "--hold-out 0.4 --iterations 260" "--share 0 --tolerance 0.1"; do
+@test "--memory: views that are read from a file give the same bytes, and nothing is left" {
+	for more in "--batch 2" "--share 0 --tolerance 0.1"; do
 		train $more --interaction none --log log -o m
 		train -v --memory 0 --threads 3 $more --interaction none --log read.log -o read 2>said
 		grep -qE '^refer-train: the weights of 4 views are in a file, [0-9]+ MiB$' said
@@ -416,7 +416,7 @@ cut_short() {
 	train -v --masks more.jsonl -o m 2>err
 	grep -qx 'refer-train: 1 masks of test views are not used' err
 	grep -qxE 'refer-train: [0-9]+ of 1000 Gaussians share [0-9]+ features, [0-9.]+ a pixel' err
-	grep -qx 'refer-train: 4 views, 3 sentences, 12 pairs, 0 more held out' err
+	grep -qx 'refer-train: 4 views, 3 sentences, 12 pairs' err
 	tail -n 1 err | grep -qE '^refer-train: [0-9.]+ s, peak memory [0-9.]+ MiB$'
 }
 
@@ -435,9 +435,6 @@ cut_short() {
 	says 2 "refer-train: --text and --masks cannot both be stdin$try" train --text - --masks - -o m
 	says 2 "refer-train: --masks and --init cannot both be stdin$try" train --init - --masks - -o m
 	says 2 "refer-train: --init-iterations needs --init$try" train --init-iterations 5 -o m
-	says 2 "refer-train: --patience needs --hold-out$try" train --patience 5 -o m
-	says 2 "refer-train: --hold-out: '0.95' is not a number from 0 to 0.9$try" train --hold-out 0.95 -o m
-	says 2 "refer-train: --patience: '0' is not a whole number from 1 to 1000000$try" train --hold-out 0.5 --patience 0 -o m
 	says 2 "refer-train: --similarity cosine does not go with --interaction pcmi-proj$try" \
 		train --similarity cosine --interaction pcmi-proj -o m
 	says 2 "refer-train: --resume needs a file to write to: there is no checkpoint of stdout$try" train --resume -o -

@@ -230,7 +230,7 @@ static void details(void)
 	const uint8_t *masks[3] = {first, first, second};
 	int sentences[3] = {0, 2, 1};
 	const int objects[3] = {0, 7, 0};
-	struct train_view view = {{P, G, indptr, index, w}, 3, sentences, masks, 0};
+	struct train_view view = {{P, G, indptr, index, w}, 3, sentences, masks};
 	struct err e;
 
 	octree_input_footprints(means, 3, cameras, 2, footprint);
