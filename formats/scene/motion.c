@@ -88,6 +88,14 @@ void motion_close(struct motion *m)
 	*m = (struct motion){0};
 }
 
+int motion_differs(const float *a, const float *b, size_t n)
+{
+	for (size_t i = 0; i < n; i++)
+		if (a[i] != b[i])
+			return 1;
+	return 0;
+}
+
 int motion_find(const struct motion *m, double t, size_t *frame, struct err *e)
 {
 	size_t low = 0, high = m->times - 1;
@@ -146,13 +154,10 @@ int motion_out_put(struct motion_out *o, size_t frame, const struct splats *s, s
 		{s->quats, QUAT * n * sizeof(float)}, {s->scales, SCALE * n * sizeof(float)}};
 
 	for (size_t i = 0; i < n && frame; i++) {
-		const int resized =
-			memcmp(s->scales + SCALE * i, f->scales + SCALE * i, SCALE * sizeof(float)) != 0;
+		const int resized = motion_differs(s->scales + SCALE * i, f->scales + SCALE * i, SCALE);
 		o->has_scales |= resized;
-		o->is_moved[i] |=
-			resized ||
-			memcmp(s->means + MEAN * i, f->means + MEAN * i, MEAN * sizeof(float)) != 0 ||
-			memcmp(s->quats + QUAT * i, f->quats + QUAT * i, QUAT * sizeof(float)) != 0;
+		o->is_moved[i] |= resized || motion_differs(s->means + MEAN * i, f->means + MEAN * i, MEAN) ||
+				  motion_differs(s->quats + QUAT * i, f->quats + QUAT * i, QUAT);
 	}
 	return scratch_put(&o->put, pieces, 3, &o->parts[frame], e);
 }

@@ -25,6 +25,9 @@ struct motion {
 int motion_open(struct motion *m, const char *path, struct err *e);
 void motion_close(struct motion *m);
 
+/* Whether any of n numbers is another. */
+int motion_differs(const float *a, const float *b, size_t n);
+
 /* *frame: the stored time that is nearest to t, of two the earlier one. -1 with *e (ERR_FORMAT, names the
  * range) where t is outside of the stored times. */
 int motion_find(const struct motion *m, double t, size_t *frame, struct err *e);

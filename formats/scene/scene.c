@@ -233,7 +233,7 @@ static int check_motion(const struct scene *s, const char *splats, struct err *e
 		return err_file(e, m->file.path, "is of %zu Gaussians, %s has %zu", m->gaussians, splats,
 			s->splats.n);
 	for (size_t k = 0; k < m->moved; k++)
-		if (memcmp(m->means + 3 * k, s->splats.means + 3 * (size_t)m->ids[k], 3 * sizeof(float)) != 0)
+		if (motion_differs(m->means + 3 * k, s->splats.means + 3 * (size_t)m->ids[k], 3))
 			return err_file(e, m->file.path,
 				"tensor 'means': Gaussian %d is at its first time elsewhere than in %s",
 				(int)m->ids[k], splats);
