@@ -207,7 +207,7 @@ Try 'refer-locate --help'." "${@:2}"; }
 	usage "RUN goes with a QUESTION and one of --colour, --alone and --remove" of --remove -o out/x.ply
 	usage "RUN goes with a QUESTION and one of --colour, --alone and --remove" of "the brown box" --remove --alone -o out/x.ply
 	usage "-o out/x.jsonl: not .ply, .splat, .spz, .glb or .sog: it is for the scene" of "the brown box" --remove -o out/x.jsonl
-	usage "RUN QUESTION goes with --scene, --model, --encoder, --viewpoint and -o only: it needs no sentences" \
+	usage "RUN QUESTION goes with --scene, --model, --encoder, --viewpoint, --time and -o only: it needs no sentences" \
 		of "the brown box" --remove --text text.safetensors -o out/x.ply
 	usage "--colour, --alone, --remove and --encoder are for RUN QUESTION" locate --remove -o out/x.ply
 	[ -z "$(ls -A out)" ]
