@@ -183,7 +183,12 @@ static void find_anchor(const struct meaning *m, struct asking_answer *answer)
 		const struct parse_clause *c = &p->clauses[clauses->item[k]];
 		const int i = c->anchors.n == 1 ? c->anchors.item[0] : -1;
 		for (int j = 0; j < c->anchors.n && c->relation < PARSE_WITH && !c->negated; j++)
-			answer->is_anchor_unknown |= is_unknown(m, c->anchors.item[j]);
+			if (is_unknown(m, c->anchors.item[j])) {
+				answer->is_anchor_unknown = 1;
+				/* what is by the other end is not between */
+				for (size_t o = 0; o < m->arrangement->n && c->relation == PARSE_BETWEEN; o++)
+					answer->holds[o] = 0;
+			}
 		if (i < 0 || p->phrases[i].viewer || meaning_is_scene(m, i) || is_unknown(m, i) ||
 			p->phrases[i].count != PARSE_ONE || !is_definite(p, &p->phrases[i]))
 			continue;

@@ -40,8 +40,14 @@ static int answer(struct answer_told *t, struct asking_answer *found, struct ask
 		talk, a->model.lifted.names, a->model.lifted.objects, t->question, t->understood);
 	chooser_within(a->chooser, of);
 	question_read(&t->asked, t->understood, 0);
-	const int bad = is_of_nothing(&t->asked) ? refuse(found, a, e) : kinds_answer(t, found, a, to, e);
+	int bad = is_of_nothing(&t->asked) ? refuse(found, a, e) : kinds_answer(t, found, a, to, e);
 	chooser_within(a->chooser, NULL);
+	/* "how many mugs are brown? how many are blue?": of the mugs, as no brown one is */
+	if (!bad && of && t->asked.kind == QUESTION_NUMBER && !found->count && talk_is_of_looks(talk)) {
+		asking_answer_free(found);
+		*t->value = 0;
+		bad = kinds_answer(t, found, a, to, e);
+	}
 	if (bad)
 		return -1;
 	if (talk)

@@ -98,6 +98,9 @@ const struct meaning_set *talk_understand(const struct talk *talk, char *const *
 /* Whether words of a text point back to what has to be known from before. */
 int talk_points(const char *text);
 
+/* Whether the last question told its things by their looks alone: "which mugs are brown?" */
+int talk_is_of_looks(const struct talk *talk);
+
 /* What is spoken of after an answer, which with is_within was of some of those before. */
 void talk_take(struct talk *talk, const struct answer_told *t, int is_within);
 

@@ -233,6 +233,19 @@ const struct meaning_set *talk_understand(const struct talk *talk, char *const *
 	return put_set(talk, is ? &talk->of : &talk->set, &r, of_those, understood);
 }
 
+int talk_is_of_looks(const struct talk *talk)
+{
+	struct tokens t;
+	int are = 0, is = 0;
+
+	tokens_take(&t, talk->question, NULL, NULL, 0);
+	for (int i = 0; i < t.n; i++) {
+		are |= talk_says_look(&t, i) && tokens_is(&t, i - 1, "are");
+		is |= tokens_class(&t, i) == CLOSED_PLACE;
+	}
+	return are && !is;
+}
+
 /* The one thing of a kind besides it, or else the likeliest other one. */
 static size_t find_other(const struct talk *talk, const struct answer_told *t, size_t thing)
 {

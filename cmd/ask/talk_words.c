@@ -86,10 +86,10 @@ static int two_length(const struct tokens *t, int i)
 	return tokens_is(t, i + 2, "of") && tokens_is(t, i + 3, them) ? 4 : 2;
 }
 
-/* Whether the word before "one" says a look, by which another thing of the kind is meant. */
-static int says_look(const struct tokens *t, int i)
+int talk_says_look(const struct tokens *t, int i)
 {
-	return tokens_class(t, i - 1) == CLOSED_ATTRIBUTE || colour_word(t->word[i - 1].text) >= 0;
+	return tokens_class(t, i) == CLOSED_ATTRIBUTE ||
+	       (i >= 0 && i < t->n && colour_word(t->word[i].text) >= 0);
 }
 
 /* ", isn't it?": nothing but such words since a pause. */
@@ -150,7 +150,7 @@ static struct pointed points_to(const struct tokens *t, int i, const struct refe
 		(is_end || class == CLOSED_NUMBER || tokens_is(t, i, "they")))
 		return point("", r->things, "", i + 1 + (class == CLOSED_NUMBER));
 	const int is_noun = i && tokens_is(t, i, "one|ones") && !tokens_is(t, i + 1, "of");
-	const char *noun = !is_noun ? "" : says_look(t, i) ? r->kind : r->noun;
+	const char *noun = !is_noun ? "" : talk_says_look(t, i - 1) ? r->kind : r->noun;
 	return (struct pointed){
 		"", *noun ? noun : NULL, tokens_is(t, i, "ones") ? talk_plural_end(noun) : "", i + 1};
 }

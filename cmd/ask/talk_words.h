@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cmd/ask/reply.h"
+#include "lang/tokens.h"
 
 /* What words of a question may point to; "" where there is no such thing. */
 struct referents {
@@ -17,6 +18,9 @@ unsigned talk_put_pointed(const struct referents *r, const char *question, char 
 
 /* The words of a name but for numbers; with is_noun the last of them alone. */
 void talk_name_words(const char *name, int is_noun, char words[CALLING_TEXT]);
+
+/* Whether a word says a look: of "the red one" another thing of the kind is meant. */
+int talk_says_look(const struct tokens *t, int i);
 
 /* "s" or "es". */
 const char *talk_plural_end(const char *noun);
