@@ -224,7 +224,7 @@ static void try_dataparser(const char *path)
 }
 
 enum { VALUES = 24 };
-static float values[5][VALUES];
+static float values[4][VALUES];
 static const struct checkpoint_of of = {.identity = "a training", .scene_path = "scene", .text_path = "text"};
 
 static struct train_state small_state(void)
@@ -234,8 +234,7 @@ static struct train_state small_state(void)
 		.values = values[0],
 		.gradient = values[1],
 		.m = values[2],
-		.v = values[3],
-		.best = {.values = values[4]}};
+		.v = values[3]};
 }
 
 static void try_checkpoint(const char *path)
