@@ -133,19 +133,24 @@ static int is_well_formed(const char *text, size_t length, char between)
 	return length > 0;
 }
 
+/* The names of all lines, NULL after the last, and how long each is. */
+struct lines {
+	const char *names[4096];
+	size_t length[4096];
+};
+
 /* The lines that have a name, by looking at each. */
-static void check_lines_of(const char *name, size_t n)
+static void check_lines_of(const struct lines *all, const char *name, size_t n)
 {
 	struct things_rows found;
 	char word[64];
-	const char *text;
-	size_t length;
 	int k = 0;
 
 	snprintf(word, sizeof word, "%.*s", (int)n, name);
 	things_find(&found, word);
-	for (int row = 0; k < THINGS_ROWS && (text = things_text(row, THINGS_NAMES, &length)); row++)
-		for (const char *p = text; p < text + length; p += strcspn(p, ",\t") + 2) {
+	for (int row = 0; k < THINGS_ROWS && all->names[row]; row++)
+		for (const char *p = all->names[row]; p < all->names[row] + all->length[row];
+			p += strcspn(p, ",\t") + 2) {
 			const size_t own = strcspn(p, ",\t");
 			if ((own == n || (own == n + 1 && p[n] == 's')) && !memcmp(p, word, n)) {
 				CHECK(k < found.n && found.row[k] == row, "%s is not in line %d", word, row);
@@ -159,11 +164,12 @@ static void check_lines_of(const char *name, size_t n)
 static void things(void)
 {
 	static const char between[] = {',', ';', ','};
+	static struct lines all;
 	const char *text;
 	size_t length;
 	int row = 0;
 
-	for (; things_text(row, THINGS_NAMES, &length); row++)
+	for (; (all.names[row] = things_text(row, THINGS_NAMES, &all.length[row])); row++)
 		for (int field = 0; field < 3; field++) {
 			text = things_text(row, (enum things_field)field, &length);
 			CHECK(text && is_well_formed(text, length, between[field]), "line %d, field %d: %.*s",
@@ -171,10 +177,10 @@ static void things(void)
 		}
 	CHECK(row > 1000, "%d things", row);
 	for (int i = 0; i < row; i += 7) {
-		text = things_text(i, THINGS_NAMES, &length);
+		text = all.names[i];
 		const size_t n = strcspn(text, ",\t");
-		check_lines_of(text, n);
-		check_lines_of(text, n - (text[n - 1] == 's'));
+		check_lines_of(&all, text, n);
+		check_lines_of(&all, text, n - (text[n - 1] == 's'));
 	}
 	CHECK(name_one_thing("laptop", "chromebook") && name_one_thing("chromebook", "laptop") &&
 			!name_one_thing("laptop", "kettle"),

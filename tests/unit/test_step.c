@@ -22,70 +22,107 @@ static const struct {
 } samples[3] = {{"all", {0}, {1, 1, 1, 1, 1}, 0}, {"some", {4, 1}, {0, 2, 1.5, 0, 1.5}, 0},
 	{"some, of shared rows", {4, 1}, {0, 2, 1.5, 0, 1.5}, 1}};
 
-/* One sample against the reference; returns the worst relative gradient error over the arrays. */
-static double compare(const struct reference_options *o, const char *kernels, int sampled, const char *name)
+enum { KERNELS = 3 };
+static const char *const kernels[KERNELS] = {"plain", "avx2", "avx512"};
+
+/* What the reference says of a sample. */
+struct expected {
+	struct refer_result result;
+	double *dx, *dparameters;
+};
+
+/* The gradients of a sample's parameters against the reference; returns the worst relative error. */
+static double compare_parameters(
+	const struct reference_sample *s, const struct floats *f, const struct expected *x, const char *name)
+{
+	double worst = 0;
+
+	for (int t = 0; t < REFER_TENSORS; t++) {
+		size_t count = (size_t)s->layout.tensors[t].rows * (size_t)s->layout.tensors[t].columns;
+		size_t at = s->layout.tensors[t].offset;
+		double own = distance(f->gradient + at, x->dparameters + at, count);
+		if (t == KEY_BIAS || t == KEY_POSITION_BIAS) { /* 0 but for rounding; ours is exactly 0 */
+			for (size_t k = 0; k < count; k++)
+				CHECK(f->gradient[at + k] == 0 && fabs(x->dparameters[at + k]) < 1e-12,
+					"%s: %s is not 0", name, s->layout.tensors[t].name);
+			continue;
+		}
+		CHECK(own < 2e-4, "%s: gradient of %s differs by %.3g", name, s->layout.tensors[t].name, own);
+		worst = fmax(worst, own);
+	}
+	return worst;
+}
+
+/* One step of a sample against the reference; returns the worst relative gradient error over the arrays. */
+static double compare_step(const struct reference_sample *s, struct floats *f, const struct expected *x,
+	const char *with, const struct step_others *others, const char *name)
+{
+	const struct refer_problem *p = &s->problem;
+	const struct refer_result *result = &x->result;
+	const int width = s->layout.feature_width;
+	struct err e;
+
+	struct step *step = make_step(s, f, 1, with);
+	struct view_weights view = view_of(p, f);
+	struct step_target target = {p->target, f->mask};
+	struct step_losses losses = step_run(step, f->parameters, f->panels, &view, &target, 1, top_count(p),
+		others, f->gradient, f->dpanels);
+	float *m = mem_alloc(p->n, sizeof *m, "test", &e);
+	step_respond(step, f->parameters, f->panels, p->target, m);
+	double off = distance(m, result->m, p->n);
+	CHECK(off < 1e-5, "%s: responses differ by %.3g", name, off);
+	CHECK(fabs(losses.bce - result->bce) < 1e-5 * fabs(result->bce), "%s: bce %.9g, reference %.9g", name,
+		losses.bce, result->bce);
+	CHECK(fabs(losses.contrast - result->contrast) <= 1e-4 * fabs(result->contrast),
+		"%s: contrast %.9g, reference %.9g", name, losses.contrast, result->contrast);
+	panels_unpack(f->dpanels, p->n, width, f->dx);
+	const double worst = distance(f->dx, x->dx, p->n * (size_t)width);
+	CHECK(worst < 2e-4, "%s: dx differs by %.3g", name, worst);
+	free(m);
+	step_free(step);
+	return fmax(worst, compare_parameters(s, f, x, name));
+}
+
+/* One sample by all kernels that there are: worst (KERNELS) grows. */
+static void compare(const struct reference_options *o, int sampled, const char *name, double *worst)
 {
 	const struct step_others some = {samples[sampled].others, 2}, *others = sampled ? &some : NULL;
 	struct reference_sample s;
-	struct refer_result result;
+	struct expected x;
 	struct floats f;
 	struct err e;
 
 	reference_sample_init(&s, o);
-	floats_init(&f, &s);
 	struct refer_problem *p = &s.problem;
-	const size_t features = p->n * (size_t)o->feature_width;
 	uint32_t *counts = mem_alloc(p->n, sizeof *counts, "test", &e);
 	for (size_t i = 0; i < p->n; i++)
 		counts[i] = 1 + (uint32_t)(i * i % 7);
 	p->times = samples[sampled].times;
 	p->counts = samples[sampled].is_shared ? counts : NULL;
-	double *dx = mem_alloc(features, sizeof *dx, "test", &e);
-	double *dparameters = mem_alloc(s.layout.count, sizeof *dparameters, "test", &e), worst = 0;
-	struct step *step = make_step(&s, &f, 1, kernels);
-	CHECK(!reference_forward(p, &result, &e) && !reference_backward(p, &result, dx, dparameters, &e),
+	x.dx = mem_alloc(p->n, (size_t)o->feature_width * sizeof *x.dx, "test", &e);
+	x.dparameters = mem_alloc(s.layout.count, sizeof *x.dparameters, "test", &e);
+	CHECK(!reference_forward(p, &x.result, &e) &&
+			!reference_backward(p, &x.result, x.dx, x.dparameters, &e),
 		"%s", name);
-	struct view_weights view = view_of(p, &f);
-	struct step_target target = {p->target, f.mask};
-	struct step_losses losses = step_run(
-		step, f.parameters, f.panels, &view, &target, 1, top_count(p), others, f.gradient, f.dpanels);
-	float *m = mem_alloc(p->n, sizeof *m, "test", &e);
-	step_respond(step, f.parameters, f.panels, p->target, m);
-	double off = distance(m, result.m, p->n);
-	CHECK(off < 1e-5, "%s: responses differ by %.3g", name, off);
-	CHECK(fabs(losses.bce - result.bce) < 1e-5 * fabs(result.bce), "%s: bce %.9g, reference %.9g", name,
-		losses.bce, result.bce);
-	CHECK(fabs(losses.contrast - result.contrast) <= 1e-4 * fabs(result.contrast),
-		"%s: contrast %.9g, reference %.9g", name, losses.contrast, result.contrast);
-	panels_unpack(f.dpanels, p->n, o->feature_width, f.dx);
-	worst = distance(f.dx, dx, features);
-	CHECK(worst < 2e-4, "%s: dx differs by %.3g", name, worst);
-	for (int t = 0; t < REFER_TENSORS; t++) {
-		size_t count = (size_t)s.layout.tensors[t].rows * (size_t)s.layout.tensors[t].columns;
-		size_t at = s.layout.tensors[t].offset;
-		double own = distance(f.gradient + at, dparameters + at, count);
-		if (t == KEY_BIAS || t == KEY_POSITION_BIAS) { /* 0 but for rounding; ours is exactly 0 */
-			for (size_t k = 0; k < count; k++)
-				CHECK(f.gradient[at + k] == 0 && fabs(dparameters[at + k]) < 1e-12,
-					"%s: %s is not 0", name, s.layout.tensors[t].name);
-			continue;
-		}
-		CHECK(own < 2e-4, "%s: gradient of %s differs by %.3g", name, s.layout.tensors[t].name, own);
-		worst = own > worst ? own : worst;
+	for (int k = 0; k < KERNELS && block_select(kernels[k]); k++) {
+		char with[160];
+		snprintf(with, sizeof with, "%s, %s", kernels[k], name);
+		floats_init(&f, &s);
+		worst[k] = fmax(worst[k], compare_step(&s, &f, &x, kernels[k], others, with));
+		floats_free(&f);
 	}
-	mem_free_all(m, dx, dparameters, counts);
-	step_free(step);
-	reference_free(&result);
-	floats_free(&f);
+	mem_free_all(x.dx, x.dparameters, counts);
+	reference_free(&x.result);
 	reference_sample_free(&s);
-	return worst;
 }
 
-static void against_reference(const char *kernels)
+static void against_reference(void)
 {
 	for (int i = 0; i < REFER_INTERACTIONS; i++)
 		for (int sim = 0; sim < (i == REFER_PCMI_PROJ ? 1 : 2); sim++) {
-			double worst = 0;
+			const char *const of = refer_interaction_name((enum refer_interaction)i),
+					  *const by = refer_similarity_name((enum refer_similarity)sim);
+			double worst[KERNELS] = {0};
 			for (int k = 0; k < 3 * REFER_CONTRASTS; k++) {
 				const int c = k / 3;
 				struct reference_options o =
@@ -94,15 +131,12 @@ static void against_reference(const char *kernels)
 				char name[128];
 				o.n = 1500; /* several blocks, the last not full */
 				o.feature_width = widths[k % 4];
-				snprintf(name, sizeof name, "%s, %s, %s, contrast %d with %s, width %d",
-					kernels, refer_interaction_name((enum refer_interaction)i),
-					refer_similarity_name((enum refer_similarity)sim), c,
-					samples[k % 3].name, o.feature_width);
-				worst = fmax(worst, compare(&o, kernels, k % 3, name));
+				snprintf(name, sizeof name, "%s, %s, contrast %d with %s, width %d", of, by,
+					c, samples[k % 3].name, o.feature_width);
+				compare(&o, k % 3, name, worst);
 			}
-			printf("%s, %s, %s: worst relative gradient error %.2g\n", kernels,
-				refer_interaction_name((enum refer_interaction)i),
-				refer_similarity_name((enum refer_similarity)sim), worst);
+			printf("%s, %s: worst relative gradient error %.2g plain, %.2g avx2, %.2g avx512\n",
+				of, by, worst[0], worst[1], worst[2]);
 		}
 }
 
@@ -260,10 +294,6 @@ int main(void)
 			fused_kernels_are_equal((enum refer_interaction)i);
 	}
 	batches_fit_in_memory();
-	against_reference("plain");
-	if (block_select("avx2"))
-		against_reference("avx2");
-	if (block_select("avx512"))
-		against_reference("avx512");
+	against_reference();
 	return unit_end();
 }
