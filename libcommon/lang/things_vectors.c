@@ -56,18 +56,20 @@ double things_vectors_between(
 	return best;
 }
 
+enum { LANES = 16 }; /* sums side by side */
+
 void things_vectors_cosines(const struct things_vectors *t, const float *direction, float *cosine)
 {
 	for (int i = 0; i < t->lines; i++) {
 		const int8_t *line = t->of + (size_t)i * (size_t)t->width;
-		float sum[8] = {0};
+		float sum[LANES] = {0};
 		int d = 0;
-		for (; d + 8 <= t->width; d += 8)
-			for (int k = 0; k < 8; k++)
+		for (; d + LANES <= t->width; d += LANES)
+			for (int k = 0; k < LANES; k++)
 				sum[k] += direction[d + k] * (float)line[d + k];
 		for (; d < t->width; d++)
 			sum[0] += direction[d] * (float)line[d];
-		for (int k = 1; k < 8; k++)
+		for (int k = 1; k < LANES; k++)
 			sum[0] += sum[k];
 		cosine[i] = sum[0] / t->length[i];
 	}

@@ -7,7 +7,8 @@
 # `kept-back` nobody has who works on the program: please keep it so, and read only the figures.
 #
 # Prints, for each file and in all, how many were answered with exactly the meant objects: of those that mean one thing (plain and
-# chatty rewordings, new ones), several, and nothing that is there. At last what was believed of the answers to those that mean one thing.
+# chatty rewordings, new ones), several, and nothing that is there. At last what was believed of the answers to those that mean one thing,
+# and how many that are refused --always guesses rightly.
 #
 # With KEEP the scenes, their weights and their selected masks stay in DIR for the next run, which lifts them again.
 set -euo pipefail
@@ -36,10 +37,11 @@ for file in "$here/said/$1"/*.jsonl; do
 	[ "$name" != desk ] || [ -n "${DATA:-}" ] || continue
 	make_scene "$name"
 	jq -r '"", .text' "$file" >"$work/questions"
-	# 1: one of them has no answer
-	"$BIN/refer-ask" -q --json --encoder "$BERT" "$scenes/$name" <"$work/questions" >"$work/replies" || [ $? = 1 ]
+	# 1 or 5: one of them has no answer, or a guess
+	"$BIN/refer-ask" -q --json --always --encoder "$BERT" "$scenes/$name" <"$work/questions" >"$work/replies" || grep -qx '[15]' <<<$?
 	jq -c --slurpfile replies "$work/replies" --slurpfile asked "$file" -n '
-		range($asked | length) as $i | $asked[$i] + ($replies[$i] | {got: (if .answered then [.things[].name] | sort else [] end), belief: .things[0].probability})
+		range($asked | length) as $i | $asked[$i] + ($replies[$i] | {guess: (if .guess then [.things[].name] else null end),
+			got: (if .answered and (.guess | not) then [.things[].name] | sort else [] end), belief: .things[0].probability})
 		| .right = (.got == (.objects | sort))' >"$work/$name.answers"
 	printf '%s\t%s\n' "$name" "$(count "$work/$name.answers")"
 	[ -n "${KEEP:-}" ] || rm -rf "${work:?}/$name" "$work/raw.$name"
@@ -48,3 +50,4 @@ printf 'all\t%s\n' "$(count "$work"/*.answers)"
 jq -rs 'map(select((.objects | length == 1) and .got != [])) | def percent: . * 1000 | round / 10;
 	"of one thing: \(length) answered, mean belief \(map(.belief) | add / length | percent)%, right \((map(select(.right)) | length) / length | percent)%"' \
 	"$work"/*.answers
+jq -rs 'map(select((.objects | length == 1) and .guess)) | "of one thing: \(length) guessed by --always, right \(map(select(.guess == .objects)) | length)"' "$work"/*.answers
