@@ -6,6 +6,7 @@
 #include "cmd/text/questions.h"
 #include "answer/responses.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <unistd.h>
 
@@ -17,8 +18,9 @@ enum { ASK_UNSURE = 5 };
 
 static struct {
 	struct asking_options asking;
+	double time;
 	struct reply_options reply;
-} options = {.asking = {.least = RESPONSES_LEAST, .time = NAN}};
+} options = {.asking = {.least = RESPONSES_LEAST}, .time = NAN};
 
 static const struct cli_option table[] = {
 	CLI_TEXT("scene", &options.asking.given.scene, "SCENE", "scene folder (default: RUN/scene)"),
@@ -34,7 +36,7 @@ static const struct cli_option table[] = {
 		"likewise the thing in a box, such as a detector draws"),
 	CLI_TEXT("viewpoint", &options.asking.viewpoint, "VIEW|x,y,z",
 		"where questions are asked: left and right are as seen from there (default: between the training views)"),
-	{"time", 0, CLI_REAL, &options.asking.time, "T",
+	{"time", 0, CLI_REAL, &options.time, "T",
 		"of a scene that moves: where things are at this time (default: its first)", 0, 0},
 	{"min-probability", 0, CLI_REAL, &options.asking.least, "P",
 		"a question less likely to mean anything that is here is refused (default 0.5)", 0, 1},
@@ -147,6 +149,7 @@ static int ask(const struct cli *c, struct asking *a, int *status, struct err *e
 
 	if (c->operand_count > 1 && !question_take(&q, c->operands[1]))
 		return err_set(e, ERR_FORMAT, "the question %s", q.fault);
+	options.asking.time = isnan(options.time) ? NULL : &options.time;
 	if (asking_open(a, &options.asking, e))
 		return -1;
 	cli_note(c, 1, "%zu objects, loaded in %.3f s", a->model.lifted.objects, cli_seconds() - c->start);

@@ -7,11 +7,14 @@
 #include "cmd/text/questions.h"
 #include "formats/splats/anysplats.h"
 
+#include <math.h>
+
 static struct {
 	struct request_options request;
 	const char *ply, *splat, *each, *encoder;
 	int show, is_all, shows[LOCATE_REMOVED + 1];
-} options = {.request = REQUEST_DEFAULTS};
+	double time;
+} options = {.request = REQUEST_DEFAULTS, .time = NAN};
 
 static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUEST_SENTENCES(options.request),
 	CLI_SWITCH("all", &options.is_all,
@@ -21,7 +24,7 @@ static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUES
 		"lifted models: a sentence less likely to mean anything means nothing (default 0.5)", 0, 1},
 	CLI_TEXT("viewpoint", &options.request.viewpoint, "VIEW|x,y,z",
 		"lifted models: where sentences are said (default: the view that a sentence names, else between the training views)"),
-	{"time", 0, CLI_REAL, &options.request.time, "T",
+	{"time", 0, CLI_REAL, &options.time, "T",
 		"of a scene that moves: where things are at this time (default: its first)", 0, 0},
 	CLI_TEXT("ply", &options.ply, "FILE",
 		"write the scene with the object of the one sentence as a 3DGS .ply"),
@@ -90,8 +93,8 @@ static void check_all(const struct cli *c)
 
 	if (!options.is_all && options.each)
 		cli_usage(c, "--each is for --all");
-	if (options.is_all && (o->text || o->refs || o->viewpoint || !isnan(o->time) ||
-				      o->sentences != REQUEST_ALL || options.splat || options.show))
+	if (options.is_all && (o->text || o->refs || o->viewpoint || o->time || o->sentences != REQUEST_ALL ||
+				      options.splat || options.show))
 		cli_usage(
 			c, "--all goes with --scene, --model, --ply and --each only: it needs no sentences");
 }
@@ -160,6 +163,7 @@ static int answer(const struct cli *c, struct err *e)
 
 static int run(const struct cli *c, const struct report *to, struct err *e)
 {
+	options.request.time = isnan(options.time) ? NULL : &options.time;
 	if (c->operand_count)
 		return show(c, to, e);
 	check(c);

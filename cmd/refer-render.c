@@ -6,10 +6,13 @@
 #include "cmd/render/draw.h"
 #include "cmd/render/request.h"
 
+#include <math.h>
+
 static struct {
 	struct request_options request;
 	struct draw_options draw;
-} options = {.request = REQUEST_DEFAULTS, .draw = {.split = SPLIT_TEST}};
+	double time;
+} options = {.request = REQUEST_DEFAULTS, .draw = {.split = SPLIT_TEST}, .time = NAN};
 
 static const struct cli_option table[] = {REQUEST_FILES(options.request),
 	CLI_ONE_OF("split", &options.draw.split, "train|test|all", "which views (default test)"),
@@ -23,7 +26,7 @@ static const struct cli_option table[] = {REQUEST_FILES(options.request),
 		"lifted models: choose without words, names, knowledge, colours, surfaces, sizes, relations, except, sentence or purpose"),
 	CLI_TEXT("viewpoint", &options.request.viewpoint, "VIEW|x,y,z|each",
 		"lifted models: where sentences are said; each: in every view that is rendered (default: the view that a sentence names, else between the training views)"),
-	{"time", 0, CLI_REAL, &options.request.time, "T",
+	{"time", 0, CLI_REAL, &options.time, "T",
 		"of a scene that moves: everything at this time (default: each view at its own)", 0, 0},
 	CLI_SWITCH("parts", &options.request.wants_parts,
 		"lifted models: where a sentence means several objects, the mask of each too, in the key parts"),
@@ -62,6 +65,7 @@ static void check(const struct cli *c)
 		cli_usage(c, "--size and --scale do not go together");
 	if (options.draw.peak && options.draw.is_amodal)
 		cli_usage(c, "--peak and --amodal do not go together");
+	options.request.time = isnan(options.time) ? NULL : &options.time;
 	options.draw.is_each = o->viewpoint && !strcmp(o->viewpoint, "each");
 }
 

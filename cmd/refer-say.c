@@ -3,7 +3,7 @@
 #include "cli/cli.h"
 #include "cmd/ask/saying.h"
 
-static struct asking_options asking = {.time = NAN};
+static struct asking_options asking;
 static struct saying_options saying = {.each = 200, .least = 0.6};
 
 static const struct cli_option table[] = {

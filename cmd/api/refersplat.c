@@ -79,11 +79,10 @@ int refersplat_load(struct refersplat *r, const char *scene, const char *model, 
 	if (!scene || !model)
 		return end(r, err_set(&r->err, ERR_USAGE, "a scene and a model must be named"));
 	r->options = (struct asking_options){.run = scene,
-		.time = NAN,
 		.given = {.scene = (char *)scene, .model = (char *)model, .encoder = (char *)encoder},
 		.least = RESPONSES_LEAST};
 	const int bad = asking_open(&r->asking, &r->options, &r->err);
-	r->options = (struct asking_options){.least = RESPONSES_LEAST, .time = NAN};
+	r->options = (struct asking_options){.least = RESPONSES_LEAST};
 	r->is_loaded = !bad;
 	if (bad)
 		unload(r);
@@ -247,17 +246,9 @@ static int copy_mask(void *data, const struct answer *a, struct err *e)
 static int draw_mask(struct refersplat *r, const struct camera *view, const size_t *things, size_t count,
 	unsigned char *mask)
 {
-	SCOPED_BY(responses_free) struct responses responses = {0};
-	struct splats shown;
-	const struct answer_question q = {.splats = &shown, .responses = &responses};
 	const struct answer_calls calls = {mask, copy_mask, NULL};
 
-	if (answer_responses(&responses, &r->asking.model.lifted, things, count, &r->err) ||
-		scene_splats_shown(&shown, &r->asking.scene, view, &r->err))
-		return -1;
-	const int bad = answer_all(&q, view, 1, &calls, &r->err);
-	scene_splats_release(&shown, &r->asking.scene);
-	return bad;
+	return answer_mask(&r->asking, things, count, view, &calls, &r->err);
 }
 
 /* things gets the objects, all of which are there. */

@@ -213,3 +213,31 @@ int answering_is_comparable(int relation)
 
 	return relation >= 0 && (by >> relation & 1);
 }
+
+size_t answering_nearest(const struct asking *a, size_t object, double *distance)
+{
+	size_t nearest = ASKING_NONE;
+
+	for (size_t o = 0; o < a->model.lifted.objects; o++) {
+		const double *x = a->model.extents[object].turned.centre,
+			     *y = a->model.extents[o].turned.centre;
+		const double d = hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
+		if (o == object || !a->model.extents[o].n || !a->model.extents[object].n ||
+			(nearest != ASKING_NONE && d >= *distance))
+			continue;
+		nearest = o;
+		*distance = d;
+	}
+	return nearest;
+}
+
+const char *answering_side(const double centre[3], const double other[3])
+{
+	static const char *const sides[3][2] = {
+		{"to the left of", "to the right of"}, {"in front of", "behind"}, {"below", "above"}};
+	int axis = 0;
+
+	for (int k = 1; k < 3; k++)
+		axis = fabs(centre[k] - other[k]) > fabs(centre[axis] - other[axis]) ? k : axis;
+	return sides[axis][centre[axis] > other[axis]];
+}

@@ -10,7 +10,8 @@
 /* Views are compared at this size of their longer side, in pixels. */
 enum { LOOK_SIDE = 200 };
 
-int answer_responses(
+/* The things, at least one, as one answer: where the response of any of them is above 0. */
+static int take_responses(
 	struct responses *to, const struct lifted *l, const size_t *things, size_t count, struct err *e)
 {
 	SCOPED float *own = mem_alloc(l->gaussians, sizeof *own, "responses", e);
@@ -118,11 +119,26 @@ int answer_picture(const struct asking *a, const struct asking_answer *answer, c
 
 	if (!drawn->view && !a->scene.cameras.n)
 		return err_set(e, ERR_FORMAT, "%s: has no view to draw", a->files.scene);
-	int bad = answer_responses(&responses, &a->model.lifted, answer->things, answer->count, e) ||
+	int bad = take_responses(&responses, &a->model.lifted, answer->things, answer->count, e) ||
 		  (!drawn->view && best_view(a, &q, &drawn->view, e));
 	if (!bad) {
 		q.wants_rgb = 1;
 		bad = answer_all(&q, drawn->view, 1, &calls, e);
 	}
 	return bad ? -1 : 0;
+}
+
+int answer_mask(const struct asking *a, const size_t *things, size_t count, const struct camera *view,
+	const struct answer_calls *calls, struct err *e)
+{
+	SCOPED_BY(responses_free) struct responses responses = {0};
+	struct splats shown;
+	const struct answer_question q = {.splats = &shown, .responses = &responses};
+
+	if (take_responses(&responses, &a->model.lifted, things, count, e) ||
+		scene_splats_shown(&shown, &a->scene, view, e))
+		return -1;
+	const int bad = answer_all(&q, view, 1, calls, e);
+	scene_splats_release(&shown, &a->scene);
+	return bad;
 }

@@ -1,4 +1,4 @@
-#include "cmd/ask/reply.h"
+#include "cmd/ask/answering.h"
 
 #include "base/jsontext.h"
 #include "base/number.h"
@@ -75,12 +75,13 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 	char **names = a->model.lifted.names;
 	char length[LENGTH_TEXT];
 	double distance;
-	const size_t nearest = asking_nearest(a, object, &distance);
+	const size_t nearest = answering_nearest(a, object, &distance);
 
 	fprintf(out, "%s: ", names[object]);
 	if (nearest != ASKING_NONE)
 		fprintf(out, "%s %s %s; ", answer_length(a, distance, length),
-			asking_side(t->answer->centres[object], t->answer->centres[nearest]), names[nearest]);
+			answering_side(t->answer->centres[object], t->answer->centres[nearest]),
+			names[nearest]);
 	put_belief(t, object, 1, out);
 	if (a->model.extents[object].n && t->is_verbose)
 		put_box(t, object, out);
@@ -238,7 +239,7 @@ static void put_place(struct jsontext *to, const struct answer_told *t, size_t o
 	const struct asking *a = t->asking;
 	const struct extent *x = &a->model.extents[object];
 	double distance;
-	const size_t nearest = asking_nearest(a, object, &distance);
+	const size_t nearest = answering_nearest(a, object, &distance);
 
 	for (int size = 0; size < 2 && x->n; size++) {
 		jsontext_open(to, size ? "size" : "centre", '[');
@@ -252,7 +253,7 @@ static void put_place(struct jsontext *to, const struct answer_told *t, size_t o
 	jsontext_open(to, "nearest", '{');
 	jsontext_string(to, "name", a->model.lifted.names[nearest]);
 	put_length(to, "distance", distance);
-	jsontext_string(to, "side", asking_side(t->answer->centres[object], t->answer->centres[nearest]));
+	jsontext_string(to, "side", answering_side(t->answer->centres[object], t->answer->centres[nearest]));
 	jsontext_close(to, '}');
 }
 

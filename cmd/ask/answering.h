@@ -28,3 +28,11 @@ int answering_is_comparable(int relation);
 
 /* t->distance, of the two things that were found. */
 void answering_measure_distance(struct answer_told *t);
+
+/* The object whose box is nearest to that of an object, by their centres, and how far away that is;
+ * ASKING_NONE where there is no other. */
+size_t answering_nearest(const struct asking *a, size_t object, double *distance);
+
+/* Where a thing is, seen from another: "behind", by the axis along which their centres, of an answer, are
+ * farthest apart. */
+const char *answering_side(const double centre[3], const double other[3]);

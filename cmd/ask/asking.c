@@ -185,9 +185,9 @@ static void find_anchor(const struct meaning *m, struct asking_answer *answer)
 		for (int j = 0; j < c->anchors.n && c->relation < PARSE_WITH && !c->negated; j++)
 			if (is_unknown(m, c->anchors.item[j])) {
 				answer->is_anchor_unknown = 1;
-				/* what is by the other end is not between */
-				for (size_t o = 0; o < m->arrangement->n && c->relation == PARSE_BETWEEN; o++)
-					answer->holds[o] = 0;
+				if (c->relation ==
+					PARSE_BETWEEN) /* what is by the other end is not between */
+					memset(answer->holds, 0, m->arrangement->n * sizeof *answer->holds);
 			}
 		if (i < 0 || p->phrases[i].viewer || meaning_is_scene(m, i) || is_unknown(m, i) ||
 			p->phrases[i].count != PARSE_ONE || !is_definite(p, &p->phrases[i]))
@@ -367,34 +367,6 @@ int asking_ask(struct asking *a, const char *question, int is_all, struct asking
 	if (choose_answer(a, text, r, is_all, &w, e))
 		return -1;
 	return w.is_out_of_memory ? err_set(e, ERR_SYSTEM, "explanation: out of memory") : 0;
-}
-
-size_t asking_nearest(const struct asking *a, size_t object, double *distance)
-{
-	size_t nearest = ASKING_NONE;
-
-	for (size_t o = 0; o < a->model.lifted.objects; o++) {
-		const double *x = a->model.extents[object].turned.centre,
-			     *y = a->model.extents[o].turned.centre;
-		const double d = hypot(hypot(x[0] - y[0], x[1] - y[1]), x[2] - y[2]);
-		if (o == object || !a->model.extents[o].n || !a->model.extents[object].n ||
-			(nearest != ASKING_NONE && d >= *distance))
-			continue;
-		nearest = o;
-		*distance = d;
-	}
-	return nearest;
-}
-
-const char *asking_side(const double centre[3], const double other[3])
-{
-	static const char *const sides[3][2] = {
-		{"to the left of", "to the right of"}, {"in front of", "behind"}, {"below", "above"}};
-	int axis = 0;
-
-	for (int k = 1; k < 3; k++)
-		axis = fabs(centre[k] - other[k]) > fabs(centre[axis] - other[axis]) ? k : axis;
-	return sides[axis][centre[axis] > other[axis]];
 }
 
 const struct camera *asking_view(const struct asking *a, const char *name)

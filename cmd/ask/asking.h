@@ -30,7 +30,7 @@ struct asking_options {
 	struct run_folder given;   /* files in place of the folder's */
 	const char *viewpoint;	   /* VIEW or x,y,z; NULL: the usual one */
 	const char *camera;	   /* a file of one camera that is not in the scene; NULL: none */
-	double time;		   /* of a scene that moves; NaN: its first */
+	const double *time;	   /* of a scene that moves; NULL: its first */
 	const char *without;	   /* PART,... as choose_without takes it; may be NULL */
 	double least;		   /* a question less likely to mean anything is refused ... */
 	int is_always;		   /* ... or, of one thing that is not asked to be there, guessed */
@@ -96,14 +96,6 @@ int asking_ask(struct asking *a, const char *question, int is_all, struct asking
 /* An answer of nothing, as asking_ask begins with: 0, or -1 with *e set. asking_answer_free after either. */
 int asking_answer_make(struct asking_answer *answer, size_t objects, struct err *e);
 void asking_answer_free(struct asking_answer *answer);
-
-/* The object whose box is nearest to that of an object, by their centres, and how far away that is;
- * ASKING_NONE where there is no other. */
-size_t asking_nearest(const struct asking *a, size_t object, double *distance);
-
-/* Where a thing is, seen from another: "behind", by the axis along which their centres, of an answer, are
- * farthest apart. */
-const char *asking_side(const double centre[3], const double other[3]);
 
 /* The view of that name, the given camera among them; NULL where there is none. */
 const struct camera *asking_view(const struct asking *a, const char *name);

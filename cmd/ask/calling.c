@@ -1,4 +1,4 @@
-#include "cmd/ask/reply.h"
+#include "cmd/ask/answering.h"
 
 #include "base/mem.h"
 #include "places/arrangement.h"
@@ -140,7 +140,7 @@ static int try_beside(struct trial *t, const char *what, struct err *e)
 	int bad = 0;
 
 	for (int i = 0; i < n; i++) {
-		const char *const near[] = {asking_side(t->places->objects[t->object].centre,
+		const char *const near[] = {answering_side(t->places->objects[t->object].centre,
 						    t->places->objects[nearest[i]].centre),
 			"on", "next to"};
 		take_words(t->asking->model.lifted.names[nearest[i]], name, last);

@@ -153,13 +153,7 @@ static int shown_make(struct shown *s, const struct asking *a, const struct came
 	const size_t most = objects < RENDER_GROUP ? objects : RENDER_GROUP;
 	const size_t pixels = (size_t)c->width * (size_t)c->height;
 
-	struct splats moved;
-
-	*s = (struct shown){.asking = a};
-	if (scene_splats_shown(&moved, &a->scene, c, e))
-		return -1;
-	s->view = render_prepare(&moved, c, e);
-	scene_splats_release(&moved, &a->scene);
+	*s = (struct shown){.asking = a, .view = scene_prepare(&a->scene, c, e)};
 	if (!s->view)
 		return -1;
 	s->shares = mem_alloc(n, most * sizeof *s->shares, "shares", e);

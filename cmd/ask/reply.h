@@ -11,11 +11,6 @@
 /* A picture of an answer: the scene in the view that shows it best, the things tinted and outlined, and words
  * below. */
 
-/* The things, at least one, as one answer: where the response of any of them is above 0. Returns 0, or -1
- * with *e set; responses_free after either. */
-int answer_responses(
-	struct responses *to, const struct lifted *l, const size_t *things, size_t count, struct err *e);
-
 struct answer_drawn {
 	const struct camera *view; /* which to draw; NULL: it is found */
 	int low[2], high[2]; /* column and row: the rectangle around the things, where high > low; high is
@@ -26,6 +21,11 @@ struct answer_drawn {
  * things cover most, where things that the picture's edge cuts count half. Returns 0, or -1 with *e set. */
 int answer_picture(const struct asking *a, const struct asking_answer *answer, const char *const words[2],
 	const char *path, struct answer_drawn *drawn, struct err *e);
+
+/* The mask of things, seen as one, in a view, where they are at its time: answer_all of that view. */
+struct answer_calls;
+int answer_mask(const struct asking *a, const size_t *things, size_t count, const struct camera *view,
+	const struct answer_calls *calls, struct err *e);
 
 /* How a thing could be called: the shortest description by which the scene's own choice finds it again. */
 

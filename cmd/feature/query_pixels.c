@@ -88,12 +88,7 @@ static int find_cosines(struct pixels *p, struct err *e)
 {
 	const struct query_vectors *v = &p->q->vectors;
 	const size_t gaussians = p->q->scene.splats.n;
-	struct splats shown;
-
-	if (scene_splats_shown(&shown, &p->q->scene, p->camera, e))
-		return -1;
-	struct render_view *view = render_prepare(&shown, p->camera, e);
-	scene_splats_release(&shown, &p->q->scene);
+	struct render_view *view = scene_prepare(&p->q->scene, p->camera, e);
 
 	if (!view)
 		return -1;

@@ -330,8 +330,8 @@ static int put_all(struct proposing *p, FILE *out, struct err *e)
 		if (p->options->split != PROPOSING_ALL && is_train != (p->options->split == PROPOSING_TRAIN))
 			continue;
 		struct region_picture *shown = &p->views[at].shown;
-		if ((!shown->nodes && region_picture_render(
-					      shown, &p->tree, &p->scene.splats, &c->views[at], scale, e)) ||
+		if ((!shown->nodes &&
+			    region_picture_render(shown, &p->tree, &p->scene, &c->views[at], scale, e)) ||
 			put_view(p, at, out, e))
 			return -1;
 	}

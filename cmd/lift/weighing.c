@@ -110,7 +110,7 @@ static int weigh_view(void *context, int worker, size_t at, struct err *e)
 	const struct camera camera = camera_resize(full, done->width, done->height);
 	struct weighed_packed *packed = &room->packed;
 	const struct render_weights *rendered = &room->rendered;
-	int bad = scene_splats_at(&room->moved, of->scene, full, NULL, e) ||
+	int bad = scene_splats_at(&room->moved, of->scene, full, e) ||
 		  prepare(room, &room->moved, &camera, e) ||
 		  (o->is_packed ? weigh_packed(packed, room->view, &camera, of->scene->splats.n, o->tolerance,
 					  room->dropped, e)

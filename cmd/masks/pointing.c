@@ -30,8 +30,8 @@ int pointing_look(struct pointing *p, size_t at, struct err *e)
 	if (!path || l->nodes)
 		return path ? 0 : -1;
 	if (!*folder || !file_exists(path))
-		return region_picture_render(l, &p->regions.tree, &p->scene.splats,
-			&p->scene.cameras.views[at], POINTING_SCALE, e);
+		return region_picture_render(
+			l, &p->regions.tree, &p->scene, &p->scene.cameras.views[at], POINTING_SCALE, e);
 	if (weights_open_in(&w, &p->room, WEIGHTS_ROWS, folder, &p->scene, at, e))
 		return -1;
 	l->height = w.height;

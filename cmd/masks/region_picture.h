@@ -3,9 +3,8 @@
 #pragma once
 
 #include "base/err.h"
-#include "geom/camera.h"
+#include "formats/scene/scene.h"
 #include "propose/region_tree.h"
-#include "splat/splats.h"
 
 struct region_picture {
 	int height, width;
@@ -17,5 +16,5 @@ int region_picture_take(struct region_picture *p, const struct region_tree *t,
 	const struct view_weights *rows, struct err *e);
 
 /* The same of a view that is rendered at a share of its size. */
-int region_picture_render(struct region_picture *p, const struct region_tree *t, const struct splats *splats,
+int region_picture_render(struct region_picture *p, const struct region_tree *t, const struct scene *scene,
 	const struct camera *camera, double scale, struct err *e);

@@ -172,7 +172,7 @@ static int render(struct drawing *d, size_t views, struct err *e)
 static int render_all(struct drawing *d, const struct viewpoint *from, struct err *e)
 {
 	struct scene *scene = &d->request->scene;
-	const int is_moving = scene->motion.times && isnan(d->request->options->time);
+	const int is_moving = scene->motion.times && !d->request->options->time;
 	double at = NAN;
 	int bad = 0;
 

@@ -12,7 +12,6 @@
 #include "places/viewpoint.h"
 
 #include <cjson/cJSON.h>
-#include <math.h>
 
 /* Beside SPLIT_TRAIN and SPLIT_TEST. */
 enum { REQUEST_ALL = 2 };
@@ -26,12 +25,12 @@ struct request_options {
 	const char *without;		  /* and PART,... as choose_without takes it; may be NULL */
 	int wants_parts;		  /* and answer/responses.h */
 	const char *viewpoint;		  /* VIEW or x,y,z; NULL: each sentence's own */
-	double time; /* of a scene that moves; NaN: its first, or that of what is drawn */
+	const double *time; /* of a scene that moves; NULL: its first, or that of what is drawn */
 };
 
 #define REQUEST_DEFAULTS                                                                                     \
 	{                                                                                                    \
-		.sentences = REQUEST_ALL, .least = RESPONSES_LEAST, .time = NAN                              \
+		.sentences = REQUEST_ALL, .least = RESPONSES_LEAST                                           \
 	}
 
 /* Rows of a tool's table of options (cli/cli.h), for a struct request_options o. */

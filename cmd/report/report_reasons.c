@@ -134,7 +134,6 @@ int report_answer(const struct report_run *r, struct report_set *s, const struct
 {
 	const size_t most = r->options->views < MOST_VIEWS ? (size_t)r->options->views : MOST_VIEWS;
 	const struct request_options options = {.scene = r->scene.path,
-		.time = NAN,
 		.text = "text.safetensors",
 		.model = r->lifted_path,
 		.least = RESPONSES_LEAST};

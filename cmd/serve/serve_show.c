@@ -164,12 +164,8 @@ static int put_mask(struct serving *s, void *data, struct err *e)
 	const struct lifted *l = &s->asking->model.lifted;
 	const cJSON *only = cJSON_IsArray(w->things) ? w->things->child : w->things;
 	SCOPED size_t *things = mem_alloc(l->objects, sizeof *things, "mask", e);
-	SCOPED_BY(responses_free) struct responses responses = {0};
 	SCOPED_BY(rle_free) struct rle mask = {0};
-	const struct scene *scene = &s->asking->scene;
-	const struct camera *view = &scene->cameras.views[w->view];
-	struct splats shown;
-	const struct answer_question q = {.splats = &shown, .responses = &responses};
+	const struct camera *view = &s->asking->scene.cameras.views[w->view];
 	const struct answer_calls calls = {&mask, encode_mask, NULL};
 	struct serving_text text;
 	size_t count = 0, thing = 0;
@@ -181,11 +177,7 @@ static int put_mask(struct serving *s, void *data, struct err *e)
 	}
 	if (!things || !count)
 		return things ? err_set(e, ERR_CHECK, "no thing is named") : -1;
-	if (answer_responses(&responses, l, things, count, e) || scene_splats_shown(&shown, scene, view, e))
-		return -1;
-	const int bad = answer_all(&q, view, 1, &calls, e);
-	scene_splats_release(&shown, scene);
-	if (bad || serving_text_open(&text, e))
+	if (answer_mask(s->asking, things, count, view, &calls, e) || serving_text_open(&text, e))
 		return -1;
 	struct jsontext to = {.out = text.out};
 	serving_put_mask(&to, s->cameras.views[w->view].name, &mask);

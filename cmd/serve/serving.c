@@ -84,7 +84,6 @@ int serving_open(
 	s->threads = omp_get_max_threads();
 	s->to = to;
 	s->asking_options = (struct asking_options){.run = options->run,
-		.time = NAN,
 		.given.encoder = options->encoder,
 		.least = options->least,
 		.may_be_nameless = 1};

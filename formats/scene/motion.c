@@ -112,8 +112,12 @@ int motion_find(const struct motion *m, double t, size_t *frame, struct err *e)
 	return 0;
 }
 
-void motion_set_frame(const struct motion *m, size_t frame, struct splats *s)
+int motion_set(const struct motion *m, double t, struct splats *s, struct err *e)
 {
+	size_t frame;
+
+	if (motion_find(m, t, &frame, e))
+		return -1;
 	for (size_t k = 0; k < m->moved; k++) {
 		const size_t i = (size_t)m->ids[k], from = frame * m->moved + k;
 		memcpy(s->means + MEAN * i, m->means + MEAN * from, MEAN * sizeof(float));
@@ -121,15 +125,6 @@ void motion_set_frame(const struct motion *m, size_t frame, struct splats *s)
 		if (m->scales)
 			memcpy(s->scales + SCALE * i, m->scales + SCALE * from, SCALE * sizeof(float));
 	}
-}
-
-int motion_set(const struct motion *m, double t, struct splats *s, struct err *e)
-{
-	size_t frame;
-
-	if (motion_find(m, t, &frame, e))
-		return -1;
-	motion_set_frame(m, frame, s);
 	return 0;
 }
 

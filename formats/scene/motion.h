@@ -32,10 +32,8 @@ int motion_differs(const float *a, const float *b, size_t n);
  * range) where t is outside of the stored times. */
 int motion_find(const struct motion *m, double t, size_t *frame, struct err *e);
 
-/* Moves the scene's splats (N), which may have been moved before, to a stored time. By many threads at a
- * time. */
-void motion_set_frame(const struct motion *m, size_t frame, struct splats *s);
-/* The same to the stored time that motion_find gives. */
+/* Moves the scene's splats (N), which may have been moved before, to the stored time that motion_find gives.
+ * By many threads at a time. */
 int motion_set(const struct motion *m, double t, struct splats *s, struct err *e);
 
 /* A file in the making: times are put one by one, in any order, and wait in a file without a name. */

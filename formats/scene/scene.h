@@ -6,6 +6,7 @@
 #include "formats/arrays/fingerprint.h"
 #include "formats/scene/motion.h"
 #include "geom/camera.h"
+#include "splat/render.h"
 #include "splat/splats.h"
 
 struct scene {
@@ -27,19 +28,19 @@ void scene_free(struct scene *s);
 int scene_read_splats(struct scene *s, const char *path, struct err *e);
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);
 
-/* to: the scene's splats at the time of a view, or of `t` where that is not NULL; of a still scene as they
- * are. What does not move is the scene's own. ERR_FORMAT where neither says a time, or it is none of the
- * scene's. */
-int scene_splats_at(
-	struct splats *to, const struct scene *s, const struct camera *view, const double *t, struct err *e);
-void scene_splats_release(struct splats *at, const struct scene *s);
-
+/* to: the scene's splats at the time of a view; of a still scene as they are. What does not move is the
+ * scene's own. ERR_FORMAT where the view has no time, or it is none of the scene's. */
+int scene_splats_at(struct splats *to, const struct scene *s, const struct camera *view, struct err *e);
 /* The same for what is drawn: a view without a time shows the splats as they are. */
 int scene_splats_shown(struct splats *to, const struct scene *s, const struct camera *view, struct err *e);
+void scene_splats_release(struct splats *at, const struct scene *s);
 
-/* Moves the scene's own splats to a time, or to that of a view; NaN: they stay. ERR_USAGE where the scene is
+/* render_prepare of the splats that a view shows. NULL with *e set. */
+struct render_view *scene_prepare(const struct scene *s, const struct camera *view, struct err *e);
+
+/* Moves the scene's own splats to a time, or to that of a view; NULL: they stay. ERR_USAGE where the scene is
  * still. Not while others read them. */
-int scene_move(struct scene *s, double t, struct err *e);
+int scene_move(struct scene *s, const double *t, struct err *e);
 int scene_move_to_view(struct scene *s, const struct camera *view, struct err *e);
 
 /* Makes dir and writes both files, each appearing whole. `options` goes into the metadata. */

@@ -191,12 +191,10 @@ void question_noun(const char *phrase, char noun[TOKEN_LENGTH])
 		i++;
 	for (i = i < t.n ? i + 1 : 0; i < t.n; i++) {
 		const int class = tokens_class(&t, i);
-		const int is_colour = i + 1 < t.n && tokens_class(&t, i + 1) == CLOSED_GENERIC &&
-				      colour_word(t.word[i].text) >= 0;
-		if (class < 0 && !is_colour && (*t.word[i].text < '0' || *t.word[i].text > '9'))
+		if (class < 0 && (*t.word[i].text < '0' || *t.word[i].text > '9'))
 			snprintf(noun, TOKEN_LENGTH, "%s", t.word[i].lemma);
-		else if (*noun || (!is_colour && class != CLOSED_ATTRIBUTE && class != CLOSED_SIZE &&
-					  class != CLOSED_NUMBER))
+		else if (*noun ||
+			 (class != CLOSED_ATTRIBUTE && class != CLOSED_SIZE && class != CLOSED_NUMBER))
 			return;
 	}
 }

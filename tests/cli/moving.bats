@@ -13,13 +13,13 @@ times() {
 chain() {
 	local dir=$1 splats=$2
 	shift 2
-	mkdir -p "$dir"
+	mkdir -p "$dir/lifted"
 	"$BIN/gs-import" -q --test-views "$(cat test-views)" "$@" -o "$dir/scene" "$splats"
 	"$BIN/gs-weigh" -q -o "$dir/weights" "$dir/scene"
-	"$BIN/refer-lift" -q --scene "$dir/scene" --weights "$dir/weights" --text text.safetensors --masks masks.jsonl -o "$dir/model"
+	"$BIN/refer-lift" -q --scene "$dir/scene" --weights "$dir/weights" --text text.safetensors --masks masks.jsonl -o "$dir/lifted/model.safetensors"
 }
 
-render() { "$BIN/refer-render" -q --split all --scene "$1/scene" --text text.safetensors --model "$1/model" "${@:2}"; }
+render() { "$BIN/refer-render" -q --split all --scene "$1/scene" --text text.safetensors --model "$1/lifted/model.safetensors" "${@:2}"; }
 
 setup_file() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
@@ -36,6 +36,8 @@ setup_file() {
 	"$BIN/gs-transform" -q --translate 2,-1,0.5 -o frames/f2.ply point_cloud.ply
 	cp point_cloud.ply same/f1.ply
 	cp point_cloud.ply same/f2.ply
+	times '.time = $i % 2 | .position[0] += 2 * .time | .position[1] -= .time | .position[2] += 0.5 * .time' >together.json
+	chain together frames --cameras together.json --times 0:1
 }
 
 setup() {
@@ -46,14 +48,24 @@ setup() {
 }
 
 @test "a scene and cameras that move together have the masks of the still scene" {
-	times '.time = $i % 2 | .position = [.position, [2, -1, 0.5]] | .position = [range(3) as $k | .position[0][$k] + ($i % 2) * .position[1][$k]]' >together.json
-	chain together frames --cameras together.json --times 0:1
 	render together -o together/masks.jsonl
 	[ "$("$BIN/miou-score" --json --truth still/masks.jsonl together/masks.jsonl | jq '.miou > 0.995')" = true ]
 	# and without the times they have not
 	render together --time 0 -o together/first.jsonl
 	[ "$("$BIN/miou-score" --json --truth still/masks.jsonl together/first.jsonl | jq '.miou < 0.8')" = true ]
-	"$BIN/refer-render" -q --threads 7 --split all --scene together/scene --text text.safetensors --model together/model | cmp - together/masks.jsonl
+	"$BIN/refer-render" -q --threads 7 --split all --scene together/scene --text text.safetensors --model together/lifted/model.safetensors | cmp - together/masks.jsonl
+}
+
+@test "a pixel that is pointed at and the masks of a page are of their view's time" {
+	masks() { jq -c '{do: "mask", view, thing: .object}' masks.jsonl | head -n 12 | "$BIN/refer-serve" -q --stdio --encoder encoder "$1"; }
+	diff <(masks still) <(masks together)
+	render still --peak 1 --views "$(jq -r '.[1].name' still/scene/cameras.json)" | jq -r 'select(.peak) | "\(.view):\(.peak[0]),\(.peak[1])"' | sort -u >places
+	[ -s places ]
+	local place
+	while read -r place; do
+		found() { "$BIN/refer-ask" -q --json --encoder encoder --point "$place" "$1" | jq -r '.things[0].name'; }
+		[ "$(found still)" = "$(found together)" ]
+	done <places
 }
 
 @test "frames in which nothing moves are a still scene, to the byte" {
@@ -71,7 +83,7 @@ setup() {
 	chain two frames --cameras first.json
 	local object at
 	object=$(jq -r .object masks.jsonl | head -n 1)
-	centre() { "$BIN/refer-locate" -q --scene two/scene --text text.safetensors --model two/model "$@" | jq -sc "map(select(.object == \"$object\") | .centre // .box.centre)[0]"; }
+	centre() { "$BIN/refer-locate" -q --scene two/scene --text text.safetensors --model two/lifted/model.safetensors "$@" | jq -sc "map(select(.object == \"$object\") | .centre // .box.centre)[0]"; }
 	at=$(jq -nc --argjson a "$(centre)" --argjson b "$(centre --time 1)" '[range(3) as $k | ($b[$k] - $a[$k]) * 100 | round]')
 	[ "$at" = '[200,-100,50]' ]
 	says 3 "refer-render: two/scene/motion.safetensors: time 2 is not within its times, 0 to 1" render two --time 2
@@ -83,6 +95,6 @@ Try 'refer-render --help'." render still --time 0
 	times '.' >none.json
 	"$BIN/gs-import" -q --cameras none.json -o none frames
 	says 3 "refer-render: none: the scene moves, and view '$(jq -r '.[0].name' none/cameras.json)' has no time: gs-import takes it from the key 'time' of a camera, or one for all with --time" \
-		"$BIN/refer-render" -q --split all --scene none --text text.safetensors --model two/model
-	"$BIN/refer-render" -q --time 1 --split all --scene none --text text.safetensors --model two/model -o /dev/null
+		"$BIN/refer-render" -q --split all --scene none --text text.safetensors --model two/lifted/model.safetensors
+	"$BIN/refer-render" -q --time 1 --split all --scene none --text text.safetensors --model two/lifted/model.safetensors -o /dev/null
 }

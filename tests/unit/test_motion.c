@@ -32,7 +32,7 @@ int main(void)
 	CHECK(!strcmp(e.message, "m: time 3.5 is not within its times, 0 to 3"), "%s", e.message);
 	CHECK(motion_find(&m, -0.1, &frame, &e) && motion_find(&m, (double)NAN, &frame, &e),
 		"before, and none");
-	motion_set_frame(&m, 2, &s);
+	CHECK(!motion_set(&m, 3, &s, &e), "%s", e.message);
 	CHECK(own_means[0] == 9 && own_means[3] == 7 && own_means[5] == 9 && own_quats[6] == 1, "the last");
 	CHECK(!motion_set(&m, 0.2, &s, &e), "%s", e.message);
 	CHECK(own_means[3] == 1 && own_quats[4] == 1 && own_quats[6] == 0, "the first again");
