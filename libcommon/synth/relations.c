@@ -1,5 +1,5 @@
 /* Directions are judged on the table, strictly also by bearing and distance from who looks; sizes both by
- * bulk and by the longest extent. Units: formats/scene/synth.md. */
+ * bulk and by the longest extent. Units: a medium mug is 0.62 high. */
 #include "base/largest.h"
 #include "synth/relations.h"
 

@@ -18,7 +18,7 @@ struct synth_viewpoint {
 	double half_u, half_v;		   /* of the table */
 	uint64_t visible; /* objects that are plainly to be seen: all, unless somebody says */
 	/* 1: by wider margins, and so that who measures a direction by bearing, or from who looks, finds the
-	 * same. formats/scene/synth.md has the margins. */
+	 * same. relations.c has the margins. */
 	int is_strict;
 };
 

@@ -4,13 +4,14 @@
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
 	PAGE=$BATS_TEST_DIRNAME/../../formats/records/scores.md
+	EXAMPLE=$BATS_TEST_DIRNAME/../golden/scores/example.txt
 	load files
 	cd "$BATS_TEST_TMPDIR"
 	files
 }
 
-# The example of the page, without its indentation.
-example() { sed -n '/^## Example/,$s/^    //p' "$PAGE"; }
+# Small files and what is printed of them.
+example() { cat "$EXAMPLE"; }
 
 # Makes the files that the example shows.
 files() { example | awk '/^\$ /{ name = $2 == "cat" ? $3 : ""; next } name { print >name }'; }
@@ -23,7 +24,7 @@ keys() { sed -n "/^| $1 |/,/^\$/p" "$PAGE" | sed -n 's/^| \(`.*`\) | .*/\1/p' | 
 	while IFS= read -r line; do
 		[[ "$line" == '$ miou-score '* ]] || continue
 		commands=$((commands + 1))
-		# blank lines have no indentation on the page
+		# blank lines are not compared
 		PATH=$BIN:$PATH bash -c "${line#?}" | grep . >printed
 		example | awk -v "line=$line" '/^\$ /{ on = $0 == line; next } on' | cmp - printed
 	done < <(example)
