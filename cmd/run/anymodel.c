@@ -188,7 +188,7 @@ int anymodel_answer(
 		of.offsets = query.offsets;
 		of.words = query.words;
 	}
-	const struct respond_model respond = {
-		&t->layout, t->similarity, &rows, t->features, t->parameters, means, t->low, t->high};
+	const struct respond_model respond = {&t->layout, t->similarity, &rows, t->blend, t->features,
+		t->parameters, means, t->low, t->high};
 	return responses_trained(a, &respond, &of, q->wants_calibration, e);
 }

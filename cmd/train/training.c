@@ -251,6 +251,9 @@ int training_write(const struct training *t, const struct trainer *learned, cons
 	const struct model m = {.layout = learned->layout,
 		.similarity = o->similarity,
 		.query = o->query,
+		.blend = learned->warm_steps && learned->state.iteration <= learned->warm_steps
+				 ? REFER_SHARES
+				 : REFER_LOGITS,
 		.precision = precision,
 		.origin = origin_of(t),
 		.scene_gaussians = t->scene.splats.n,

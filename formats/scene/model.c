@@ -158,9 +158,11 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 	arrays_in_begin(&in, st, "refer.model", VERSION_READ, e);
 	const int interaction = read_choice(&in, "interaction", refer_interaction_parse);
 	m->similarity = (enum refer_similarity)read_choice(&in, "similarity", refer_similarity_parse);
-	/* Where nothing is said, as before there were parses, it is words. */
+	/* Where nothing is said, it is words, and logits. */
 	if (safetensors_meta(st, "query"))
 		m->query = (enum refer_query)read_choice(&in, "query", refer_query_parse);
+	if (safetensors_meta(st, "blend"))
+		m->blend = (enum refer_blend)read_choice(&in, "blend", refer_blend_parse);
 	/* Version 1 had single precision only, and no word of it. */
 	if (safetensors_meta(st, "precision"))
 		m->precision = (enum precision)read_choice(&in, "precision", precision_parse);
@@ -248,6 +250,7 @@ int model_write(const struct model *m, const char *path, const char *options, lo
 	arrays_out_text(&out, "interaction", refer_interaction_name(m->layout.interaction));
 	arrays_out_text(&out, "similarity", refer_similarity_name(m->similarity));
 	arrays_out_text(&out, "query", refer_query_name(m->query));
+	arrays_out_text(&out, "blend", refer_blend_name(m->blend));
 	arrays_out_text(&out, "precision", precision_name(m->precision));
 	arrays_out_text(&out, "gaussians", arrays_out_print(&out, "%zu", m->scene_gaussians));
 	origin_put(&out, &m->origin);

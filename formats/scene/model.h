@@ -14,6 +14,7 @@ struct model {
 	struct refer_layout layout;
 	enum refer_similarity similarity;
 	enum refer_query query;
+	enum refer_blend blend;
 	enum precision precision; /* of features and weights in the file; here they are float32 */
 	size_t scene_gaussians;	  /* N of the scene that it belongs to */
 	size_t n;		  /* M rows of features */

@@ -11,6 +11,7 @@ struct respond_model {
 	const struct refer_layout *layout;
 	enum refer_similarity similarity;
 	const struct rows *rows;
+	enum refer_blend blend;
 	const float *features; /* (rows,d_r) */
 	const float *parameters;
 	const float *means;	  /* (N,3) of the rows' scene */

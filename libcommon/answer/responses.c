@@ -39,6 +39,40 @@ static int check_finite(const float *responses, const struct responses_question 
 	return 0;
 }
 
+/* Shares in place of the logits of some answers, packed; sure: the mean of their own probability over the
+ * Gaussians above 0. */
+static void make_shares(float *responses, size_t n, size_t now, const double *lifts, double *sure)
+{
+	double sum[RENDER_GROUP] = {0};
+	size_t above[RENDER_GROUP] = {0};
+
+	for (size_t i = 0; i < n; i++)
+		for (size_t r = 0; r < now; r++) {
+			float *own = &responses[i * now + r];
+			const double logit = (double)*own;
+			if (logit > 0) {
+				sum[r] += 1 / (1 + exp(lifts[r] - logit));
+				above[r]++;
+			}
+			*own = (float)tanh(logit / 2);
+		}
+	for (size_t r = 0; r < now; r++)
+		sure[r] = above[r] ? sum[r] / (double)above[r] : 0;
+}
+
+static int blend_shares(struct responses *a, size_t n, struct err *e)
+{
+	a->sure = mem_alloc(a->answers, sizeof *a->sure, "sentences", e);
+	if (!a->sure)
+		return -1;
+#pragma omp parallel for schedule(dynamic)
+	for (size_t first = 0; first < a->answers; first += RENDER_GROUP) {
+		const size_t left = a->answers - first, now = left < RENDER_GROUP ? left : RENDER_GROUP;
+		make_shares(a->responses + first * n, n, now, a->lifts + first, a->sure + first);
+	}
+	return 0;
+}
+
 static int ask_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
 	int wants_calibration, struct err *e)
 {
@@ -50,9 +84,9 @@ static int ask_trained(struct responses *a, const struct respond_model *m, const
 	if (respond_all(m, q->offsets, q->words, q->which, q->count, a->responses, e) ||
 		check_finite(a->responses, q, e) || render_pack(a->responses, q->splats->n, (int)q->count, e))
 		return -1;
-	return wants_calibration
-		       ? calibrate(q->splats, q->cameras, m->rows, a->responses, q->count, a->lifts, e)
-		       : 0;
+	int bad = wants_calibration &&
+		  calibrate(q->splats, q->cameras, m->rows, a->responses, q->count, a->lifts, e);
+	return -(bad || (m->blend == REFER_SHARES && blend_shares(a, q->splats->n, e)));
 }
 
 int responses_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,

@@ -31,10 +31,10 @@ struct responses_question {
 
 struct responses {
 	size_t answers;
-	float *responses; /* (answers,N) as render_pack has them */
+	float *responses; /* (answers,N) as render_pack has them: what is blended */
 	double *lifts;	  /* (answers) what calibration added to them */
 	size_t *answer;	  /* (count) of each sentence */
-	double *sure;	  /* (count) in [0,1], or NULL: a trained model says so in each view (respond_mask) */
+	double *sure;	  /* (count) in [0,1], or NULL: a model of logits says so in each view (respond_mask) */
 	/* Of a lifted model: answer k is the union of objects[begin[k]] to objects[begin[k + 1] - 1]. */
 	size_t *begin; /* (answers + 1), or NULL */
 	size_t *objects;

@@ -7,6 +7,7 @@ static const char *const interactions[REFER_INTERACTIONS] = {
 	"none", "attention", "attention+fp", "add", "pcmi", "pcmi-proj"};
 static const char *const similarities[2] = {"dot", "cosine"};
 static const char *const queries[2] = {"words", "parses"};
+static const char *const blends[2] = {"logits", "shares"};
 static const char *const contrasts[] = {"none", "dot", "cosine", "pairs"};
 
 /* The place of a name, or -1. */
@@ -46,6 +47,16 @@ const char *refer_query_name(enum refer_query q)
 int refer_query_parse(const char *name)
 {
 	return find_name(queries, 2, name);
+}
+
+const char *refer_blend_name(enum refer_blend b)
+{
+	return blends[b];
+}
+
+int refer_blend_parse(const char *name)
+{
+	return find_name(blends, 2, name);
 }
 
 const char *refer_contrast_name(enum refer_contrast c)

@@ -22,7 +22,8 @@
  *
  * Response: dot     m_i = sum_j f'_i.w_j
  *           cosine  m_i = sum_j f'_i.w_j / (|f'_i| |w_j|), each norm at least 1e-12 (not with pcmi-proj)
- * M(v) = sum_i w_vi m_i over the view's blend weights.
+ * M(v) = sum_i w_vi m_i over the view's blend weights; where m_i was fitted as the logit of Gaussian i alone
+ * (train/warm_start.h), sum_i w_vi (2 sigmoid(m_i) - 1): of shares, as logits differ in size without meaning.
  *
  * Loss of one sentence r in one view: L = L_bce + lambda L_con.
  * L_bce  mean over pixels of the binary cross-entropy with logits M against the mask
@@ -62,6 +63,8 @@ enum refer_interaction {
 enum refer_similarity { REFER_DOT, REFER_COSINE };
 /* What stands for a sentence: the words of the encoder, as in the paper, or of its parse (field/query.h). */
 enum refer_query { REFER_WORDS, REFER_PARSES };
+/* What is blended over a pixel. */
+enum refer_blend { REFER_LOGITS, REFER_SHARES };
 enum refer_contrast {
 	REFER_CONTRAST_NONE,
 	REFER_CONTRAST_DOT,
@@ -82,6 +85,8 @@ const char *refer_similarity_name(enum refer_similarity s);
 int refer_similarity_parse(const char *name);
 const char *refer_query_name(enum refer_query q);
 int refer_query_parse(const char *name);
+const char *refer_blend_name(enum refer_blend b);
+int refer_blend_parse(const char *name);
 const char *refer_contrast_name(enum refer_contrast c);
 
 /* One learned array of the slab. */

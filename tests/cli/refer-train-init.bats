@@ -36,6 +36,9 @@ lifted() {
 	lifted l
 	train --init l --iterations 400 --share 0 --precision f32 --log log -o m
 	jq -se '.[0].iteration == 100 and .[3].bce < 0.01 and .[3].bce < 0.1 * .[0].bce' log
+	[ "$(meta m blend)" = shares ]
+	train --init l --iterations 11 --init-iterations 10 -o m
+	[ "$(meta m blend)" = logits ]
 }
 
 @test "a training goes on to the same model from within the warm start, and from after it" {

@@ -13,7 +13,7 @@ setup() {
 # Without precision=, a file of version 1.
 model() {
 	local file=$1 assignment at=0 name shape type width bytes key items header= sep= patches=() without=
-	local interaction=none similarity=dot query= gaussians=3 bounds='[[-1,-1,-1],[1,1,1]]' precision= root= version=1
+	local interaction=none similarity=dot query= blend= gaussians=3 bounds='[[-1,-1,-1],[1,1,1]]' precision= root= version=1
 	local -A shapes=([ids]='[1]' [features]='[1,16]' [text_0_weight]='[512,1]' [text_0_bias]='[512]'
 		[text_1_weight]='[256,512]' [text_1_bias]='[256]' [text_2_weight]='[128,256]' [text_2_bias]='[128]'
 		[feature_0_weight]='[32,16]' [feature_0_bias]='[32]' [feature_1_weight]='[64,32]' [feature_1_bias]='[64]'
@@ -39,7 +39,7 @@ model() {
 		case $key in
 		*_type) types[${key%_type}]=${assignment#*=} ;;
 		*_item) patch[${key%_item}]=${assignment#*=} ;;
-		interaction | similarity | query | gaussians | bounds | precision | root | without) local "$key=${assignment#*=}" ;;
+		interaction | similarity | query | blend | gaussians | bounds | precision | root | without) local "$key=${assignment#*=}" ;;
 		*) shapes[$key]=${assignment#*=} ;;
 		esac
 	done
@@ -56,7 +56,7 @@ model() {
 			at=$((at + width * items))
 		done
 	done
-	for name in interaction similarity query gaussians bounds precision root; do
+	for name in interaction similarity query blend gaussians bounds precision root; do
 		[ -z "${!name}" ] || sep+=",\"$name\":\"${!name}\""
 	done
 	header="{\"__metadata__\":{\"format\":\"refer.model\",\"version\":\"$version\"$sep}$header}"
@@ -201,6 +201,7 @@ leaves() {
 	bad "metadata 'similarity' is 'dots'" similarity=dots
 	bad "metadata 'similarity' is ''" similarity=
 	bad "metadata 'query' is 'parse'" query=parse
+	bad "metadata 'blend' is 'share'" blend=share
 }
 
 @test "the scene's Gaussians" {

@@ -1,10 +1,12 @@
-/* Answers from lifted objects: what sentences share, outlines of what is hidden. */
+/* Answers from lifted objects: what sentences share, outlines of what is hidden; and what trained models
+ * blend. */
 #include "tests/unit/default_parser.h"
 #include "unit.h"
 
 #include "answer/answer.h"
 #include "answer/responses.h"
 #include "ask/choose.h"
+#include "base/mem.h"
 #include "splat/render.h"
 
 enum { N = 4, SIDE = 32, SENTENCES = 6, MOST = 4 };
@@ -173,8 +175,58 @@ static void test_outlines(void)
 	responses_free(&a);
 }
 
+/* A trained model of shares blends 2 sigmoid(m) - 1 where one of logits blends m, and is as sure as the mean
+ * of sigmoid(m) above 0. */
+static void test_shares(void)
+{
+	static const float features[N * 2] = {1, -2, 3, 1, -1, 4, 2, 2};
+	static const int32_t ids[] = {0, 1, 2, 3};
+	static const double low[] = {-1, -1, -3}, high[] = {1, 1, 10};
+	SCOPED_BY(rows_free) struct rows rows = {0};
+	struct refer_layout layout;
+	struct responses logits, shares;
+	struct rng r;
+	struct err e = {0};
+
+	refer_layout_init(&layout, REFER_NONE, 3, 2);
+	SCOPED float *parameters = calloc(layout.count, sizeof *parameters);
+	if (!parameters || !CHECK(!rows_of_ids(&rows, ids, N, N, &e), "%s", e.message))
+		return;
+	rng_seed(&r, 1, 0);
+	refer_init(&layout, parameters, &r);
+	for (size_t k = 0; k < layout.count; k++)
+		parameters[k] *= 3;
+	struct respond_model m = {
+		&layout, REFER_DOT, &rows, REFER_LOGITS, features, parameters, means, low, high};
+	if (!CHECK(!responses_trained(&logits, &m, &of, 0, &e), "%s", e.message))
+		return;
+	m.blend = REFER_SHARES;
+	if (CHECK(!responses_trained(&shares, &m, &of, 0, &e), "%s", e.message)) {
+		size_t above = 0, all = 0;
+		CHECK(!logits.sure && shares.sure && shares.answers == SENTENCES, "who says how sure");
+		for (size_t k = 0; k < SENTENCES; k++) {
+			double sum = 0, n = 0;
+			for (size_t i = 0; i < N; i++) {
+				const double own = (double)at(&logits, k, i), p = 1 / (1 + exp(-own));
+				CHECK(fabs((double)at(&shares, k, i) - (2 * p - 1)) < 1e-6,
+					"sentence %zu, Gaussian %zu", k, i);
+				sum += own > 0 ? p : 0;
+				n += own > 0;
+			}
+			CHECK(fabs(shares.sure[k] - (n > 0 ? sum / n : 0)) < 1e-12, "sentence %zu: %g", k,
+				shares.sure[k]);
+			above += (size_t)n;
+			all += N;
+		}
+		CHECK(above && above < all, "some are above 0: %zu", above);
+		responses_free(&shares);
+	}
+	responses_free(&logits);
+}
+
 int main(void)
 {
+	test_shares();
 	test_sharing();
 	test_wholes();
 	test_outlines();
