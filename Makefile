@@ -109,7 +109,7 @@ $(BUILD)/obj/libcommon/lang/kinds.o: libcommon/lang/kinds.tsv
 $(BUILD)/obj/libcommon/lang/things_vectors.o: libcommon/lang/things.vectors
 
 # So are the words of synthetic sentences.
-$(BUILD)/obj/libcommon/synth/wordings.o: libcommon/synth/sentences.tsv libcommon/synth/unseen.tsv
+$(BUILD)/obj/libcommon/synth/wordings.o: $(wildcard libcommon/synth/*.tsv)
 
 # So are the page of refer-report and its viewer.
 $(BUILD)/obj/cmd/report/reporting.o: cmd/report/report_page.html

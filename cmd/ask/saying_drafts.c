@@ -365,7 +365,7 @@ int drafter_make(struct drafter *d, struct asking *a, uint64_t seed, struct err 
 	*d = (struct drafter){.objects = a->model.lifted.objects};
 	d->fits = mem_alloc(d->objects, 1, "objects", e);
 	int bad = !d->fits || facts_make(&d->facts, a, e) || saying_parts_read(&d->parts, a, e) ||
-		  synth_wordings_load(&d->wordings, 0, e);
+		  synth_wordings_load(&d->wordings, SYNTH_TABLE_SENTENCES, e);
 	rng_seed(&d->rng, seed, STREAM_SAY);
 	for (long at = 0; kinds_next(&at, noun);)
 		d->nouns++;

@@ -1,6 +1,30 @@
 #include "cmd/synth/benchmark.h"
 
+#include "base/mem.h"
+
+#include <math.h>
+
 enum { ATTEMPTS = 20 };
+
+/* What is free of a table on which things move. */
+static const double room = 0.5;
+
+static int make_moves(struct benchmark *b, struct err *e)
+{
+	struct cameras *c = &b->scene.cameras;
+	const int times = b->options.times;
+
+	if (!times)
+		return 0;
+	for (size_t i = 0; i < c->n; i++) {
+		c->views[i].has_time = 1;
+		c->views[i].time =
+			synth_moves_time(times, (int)lrint((double)i * (times - 1) / (double)(c->n - 1)));
+	}
+	return -(synth_moves_draw(&b->moves, &b->scene, times, b->options.seed, e) ||
+		 synth_moving_make(&b->moving[0], &b->moves, 0, b->options.seed, e) ||
+		 synth_moving_make(&b->moving[1], &b->moves, 1, b->options.seed, e));
+}
 
 static int make_once(struct benchmark *b, struct err *e)
 {
@@ -16,13 +40,18 @@ static int make_once(struct benchmark *b, struct err *e)
 		return -1;
 	synth_detector_make(&b->detector, s->objects, s->object_count, b->sentences.items,
 		s->preset->severity, b->options.seed);
-	return 0;
+	return make_moves(b, e);
 }
 
 /* Things may stand so that they hide one, or that words cannot tell them apart; then they are put otherwise.
  * Nothing is written before. */
 int benchmark_make(struct benchmark *b, int number, uint64_t seed, struct err *e)
 {
+	if (b->options.times) {
+		b->roomy = *b->options.preset;
+		b->roomy.filled *= room;
+		b->options.preset = &b->roomy;
+	}
 	for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
 		b->options.seed = synth_preset_seed(number, seed, attempt);
 		*e = (struct err){0};
@@ -44,9 +73,11 @@ int benchmark_write(struct benchmark *b, const char *folder, const struct report
 		.sentences = &b->sentences,
 		.unseen = &b->unseen,
 		.detector = &b->detector,
+		.moves = &b->moves,
+		.moving = b->moving,
 		.statistics = &b->statistics};
 	int bad = synth_statistics_make(&b->statistics, &b->scene, &b->sentences, e) ||
-		  synth_folder_begin(&f, e);
+		  synth_folder_begin(&f, e) || (b->moves.times && synth_moving_write(&f, e));
 
 	report_start(to, "views", b->options.views);
 	for (int i = 0; i < b->options.views && !bad; i++) {
@@ -63,5 +94,9 @@ void benchmark_free(struct benchmark *b)
 {
 	synth_sentences_free(&b->sentences);
 	synth_sentences_free(&b->unseen);
+	synth_moves_free(&b->moves);
+	free(b->moving[0].items);
+	free(b->moving[1].items);
+	memset(b->moving, 0, sizeof b->moving);
 	synth_scene_free(&b->scene);
 }

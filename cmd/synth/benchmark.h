@@ -6,6 +6,7 @@
 #include "base/file.h"
 #include "base/report.h"
 #include "synth/detector.h"
+#include "synth/moves.h"
 #include "synth/statistics.h"
 #include "synth/synth_scene.h"
 #include "synth/unseen.h"
@@ -20,6 +21,8 @@ struct synth_folder {
 	struct synth_scene *scene; /* its cameras get the names of their photographs */
 	const struct synth_sentences *sentences, *unseen;
 	const struct synth_detector *detector;
+	const struct synth_moves *moves; /* its scene is the scene; no times: it is still */
+	const struct synth_moving_sentences *moving;
 	struct synth_statistics *statistics; /* each view adds to its visibility */
 	struct file_out candidates, test_candidates, truth, whole;
 };
@@ -41,8 +44,14 @@ void synth_folder_abort(struct synth_folder *f);
 void synth_unseen_put(FILE *out, const void *folder);
 void synth_unseen_put_parses(FILE *out, const void *folder);
 
+/* What a folder has besides of a scene that moves: frames, cameras with times, sentences. Moves the scene. */
+int synth_moving_write(const struct synth_folder *f, struct err *e);
+
 struct benchmark {
 	struct synth_options options; /* the caller's, but for the seed */
+	struct synth_preset roomy;    /* the preset, with room to move */
+	struct synth_moves moves;
+	struct synth_moving_sentences moving[2]; /* seen, and kept back */
 	struct synth_scene scene;
 	struct synth_detector detector;
 	struct synth_sentences sentences, unseen;

@@ -127,11 +127,15 @@ static int put_masks(
 	const struct synth_folder *f, FILE *to, const struct camera *c, const uint8_t *masks, struct err *e)
 {
 	size_t pixels = (size_t)c->width * (size_t)c->height;
+	struct mask_place when = {.has_time = 1, .time = c->time};
 	int bad = 0;
 
 	for (int i = 0; i < f->scene->object_count && !bad; i++) {
-		struct mask m = {
-			.view = c->name, .object = f->scene->objects[i].name, .score = NAN, .visible = NAN};
+		struct mask m = {.view = c->name,
+			.object = f->scene->objects[i].name,
+			.score = NAN,
+			.visible = NAN,
+			.place = c->has_time ? &when : NULL};
 		bad = rle_encode(&m.rle, masks + (size_t)i * pixels, c->height, c->width, e) ||
 		      masks_put(to, &m, e);
 		rle_free(&m.rle);
@@ -170,6 +174,9 @@ int synth_folder_view(struct synth_folder *f, int number, struct err *e)
 	const struct camera *c = &f->scene->cameras.views[number];
 	size_t pixels = (size_t)c->width * (size_t)c->height, n = (size_t)f->scene->object_count;
 	SCOPED uint8_t *visible = mem_alloc(n, pixels, "truth", e), *whole = mem_alloc(n, pixels, "truth", e);
+
+	if (f->moves->times)
+		synth_moves_set(f->moves, (int)lrint(c->time * (f->moves->times - 1)));
 	SCOPED_BY(render_release)
 	struct render_view *view = visible && whole ? render_prepare(&f->scene->splats, c, e) : NULL;
 	int bad = !view || write_photograph(f, c, view, e) ||

@@ -49,9 +49,10 @@ static int read_boxes(const struct jsonl *j, const cJSON *boxes, struct mask_pla
 
 static int read_place(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
 {
-	const cJSON *peak = json_member(object, "peak"), *boxes = json_member(object, "boxes");
+	const cJSON *peak = json_member(object, "peak"), *boxes = json_member(object, "boxes"),
+		    *time = json_member(object, "time");
 
-	if (!peak && !boxes)
+	if (!peak && !boxes && !time)
 		return 0;
 	if (!(m->place = mask_place_new(e)))
 		return -1;
@@ -60,6 +61,8 @@ static int read_place(const struct jsonl *j, const cJSON *object, struct mask *m
 			return jsonl_err(j, e, "key 'peak' is not [column,row]");
 		m->place->has_peak = 1;
 	}
+	if (time && (m->place->has_time = json_number(object, "time", 1, &m->place->time, j->where, e)) < 0)
+		return -1;
 	return boxes ? read_boxes(j, boxes, m->place, e) : 0;
 }
 
@@ -337,6 +340,8 @@ static void put_place(FILE *out, const struct mask_place *p)
 		jsonl_put_numbers(out, i ? ",[" : ",\"boxes\":[[", p->boxes[i], 4);
 	if (p->box_count)
 		fputc(']', out);
+	if (p->has_time)
+		put_number(out, ",\"time\":", p->time);
 }
 
 /* What is known of a mask but whose it is. */

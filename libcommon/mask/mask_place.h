@@ -1,5 +1,5 @@
-/* Where a mask is, beside its pixels: the point that a prediction points at, and the boxes that a label has.
- * Localisation accuracy (Kerr et al. 2023, LERF) asks whether the one lies in the other. */
+/* Where and when a mask is, beside its pixels: the point that a prediction points at, and the boxes that a
+ * label has. Localisation accuracy (Kerr et al. 2023, LERF) asks whether the one lies in the other. */
 #pragma once
 
 #include "base/err.h"
@@ -10,6 +10,8 @@ struct mask_place {
 	double peak[2]; /* column and row of a pixel, of the mask's size; the first pixel is 0,0 */
 	size_t box_count, box_room;
 	double (*boxes)[4]; /* left, top, right, bottom, in the same units; owned */
+	int has_time;	    /* the view is of this time, of a scene that moves */
+	double time;
 };
 
 /* A zeroed one; NULL with *e set. */

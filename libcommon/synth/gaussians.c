@@ -127,7 +127,7 @@ static double clear_feet(struct work *w, int owner, double spacing, double point
 {
 	double nearest = INFINITY, push = fmin(1.5 * spacing, 0.04) * rng_uniform(&w->rng);
 
-	for (int i = 0; i < w->s->object_count; i++) {
+	for (int i = 0; i < w->s->object_count && !w->s->is_moving; i++) {
 		const struct synth_object *o = &w->s->objects[i];
 		if (i == owner || fabs(o->z - point[2]) > 0.02)
 			continue;

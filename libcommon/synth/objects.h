@@ -25,6 +25,7 @@ enum synth_stream {
 	SYNTH_STREAM_TEST_ERRORS,
 	SYNTH_STREAM_UNSEEN = 512, /* one a kind of sentence */
 	SYNTH_STREAM_VIEWS = 1024, /* candidates: one stream a view */
+	SYNTH_STREAM_MOVES = 4096, /* what moves, and its sentences */
 };
 
 enum synth_shape {

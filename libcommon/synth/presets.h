@@ -38,6 +38,7 @@ struct synth_options {
 	uint64_t seed; /* synth_preset_seed */
 	int objects, views, width, height;
 	size_t gaussians;
+	int times; /* of a scene that moves, or that has room for it (1); 0: none */
 };
 
 /* Number 0 is the plain table. NULL where there is no such number. */

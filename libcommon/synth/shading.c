@@ -57,7 +57,7 @@ static double shadow(const struct synth_scene *s, int owner, const double point[
 {
 	double left = 1;
 
-	for (int i = 0; i < s->object_count; i++) {
+	for (int i = 0; i < s->object_count && !s->is_moving; i++) {
 		const struct synth_object *o = &s->objects[i];
 		double reach = o->z + 0.5 * o->height - point[2];
 		if (i == owner || reach <= 0)

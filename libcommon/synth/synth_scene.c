@@ -5,7 +5,7 @@
 
 int synth_scene_make(struct synth_scene *s, const struct synth_options *o, struct err *e)
 {
-	*s = (struct synth_scene){.preset = o->preset, .object_count = o->objects};
+	*s = (struct synth_scene){.preset = o->preset, .is_moving = o->times > 0, .object_count = o->objects};
 	s->objects = mem_zalloc((size_t)o->objects, sizeof *s->objects, "objects", e);
 	s->owner = mem_alloc(o->gaussians, sizeof *s->owner, "owners", e);
 	if (!s->objects || !s->owner || splats_alloc(&s->splats, o->gaussians, SYNTH_SH_COEFFICIENTS, e))

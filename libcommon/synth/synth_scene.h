@@ -17,6 +17,7 @@ enum {
 
 struct synth_scene {
 	const struct synth_preset *preset;
+	int is_moving; /* no shadows and nothing left out under feet: neither would go with what moves */
 	struct synth_table table;
 	int object_count;
 	struct synth_object *objects; /* (object_count) */

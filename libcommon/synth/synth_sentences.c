@@ -352,7 +352,7 @@ int synth_sentences_make(
 
 	*list = (struct synth_sentences){0};
 	rng_seed(&r, seed, SYNTH_STREAM_SENTENCES);
-	if (synth_wordings_load(&list->wordings, 0, e))
+	if (synth_wordings_load(&list->wordings, SYNTH_TABLE_SENTENCES, e))
 		return -1;
 	for (int i = 0; i < v->n; i++) {
 		const struct synth_row *frames[SYNTH_SENTENCES];

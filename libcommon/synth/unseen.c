@@ -268,7 +268,7 @@ int synth_unseen_make(struct synth_sentences *list, const struct synth_object *o
 	struct maker m = {.list = list, .places = places};
 
 	*list = (struct synth_sentences){0};
-	int bad = !places || synth_wordings_load(&list->wordings, 1, e) ||
+	int bad = !places || synth_wordings_load(&list->wordings, SYNTH_TABLE_UNSEEN, e) ||
 		  make_places(places, objects, n, table, cameras, e);
 	for (int k = 0; k < SYNTH_UNSEEN_KINDS && !bad; k++) {
 		/* A stream for each kind: more of one leave the others as they were. */

@@ -10,17 +10,29 @@
 
 EMBED(synth_sentences, "libcommon/synth/sentences.tsv");
 EMBED(synth_unseen, "libcommon/synth/unseen.tsv");
+EMBED(synth_moves, "libcommon/synth/moves.tsv");
+EMBED(synth_moves_kept, "libcommon/synth/moves-kept-back.tsv");
 extern const unsigned char synth_sentences_begin[], synth_sentences_end[], synth_unseen_begin[],
-	synth_unseen_end[];
+	synth_unseen_end[], synth_moves_begin[], synth_moves_end[], synth_moves_kept_begin[],
+	synth_moves_kept_end[];
 
 enum { FIELDS = 5, NAME = 16 };
 
 static const char *const lists[SYNTH_LISTS] = {"train", "test", "plain", "chatty", "not", "other", "nothing",
 	"neither", "ordinal", "extreme", "group-of", "most", "pair", "than", "all", "count", "also", "except",
 	"function", "view", "kind", "relation", "said", "said-test", "size", "finish", "material", "colour",
-	"noun", "group", "foreign", "use"};
+	"noun", "group", "foreign", "use", "motion-plain", "motion-moves", "motion-still", "motion-starts",
+	"motion-stops", "motion-pauses", "motion-raised", "motion-lowered", "motion-falls", "motion-rolls",
+	"motion-slides", "motion-left", "motion-right", "motion-nearer", "motion-farther", "motion-towards",
+	"motion-away", "motion-behind", "motion-front", "motion-swaps", "motion-fastest", "motion-slowest",
+	"motion-most", "motion-first", "motion-last", "motion-while", "motion-before", "motion-after"};
 
 const struct synth_sense synth_anything = {{~0U, ~0U, ~0U, ~0U}, {0}};
+
+const char *synth_motion_name(enum synth_list motion)
+{
+	return motion < SYNTH_MOTIONS ? NULL : lists[motion];
+}
 
 static enum synth_list find_list(const char *name)
 {
@@ -78,14 +90,19 @@ static void read_row(struct synth_row *r, char *line)
 		r->frames = find_list(fields[2]);
 	else if (r->list >= SYNTH_RELATIONS && r->list <= SYNTH_SAID_TEST)
 		read_relation(r, fields[2]);
+	else if (r->list >= SYNTH_MOTIONS)
+		r->form = r->more[0];
 	else if (r->list > SYNTH_SAID_TEST)
 		read_values(r, fields[2]);
 }
 
-int synth_wordings_load(struct synth_wordings *w, int is_unseen, struct err *e)
+int synth_wordings_load(struct synth_wordings *w, enum synth_table_of table, struct err *e)
 {
-	const unsigned char *begin = is_unseen ? synth_unseen_begin : synth_sentences_begin;
-	size_t size = (size_t)((is_unseen ? synth_unseen_end : synth_sentences_end) - begin), lines = 0;
+	const unsigned char *const all[SYNTH_TABLES][2] = {{synth_sentences_begin, synth_sentences_end},
+		{synth_unseen_begin, synth_unseen_end}, {synth_moves_begin, synth_moves_end},
+		{synth_moves_kept_begin, synth_moves_kept_end}};
+	const unsigned char *begin = all[table][0];
+	size_t size = (size_t)(all[table][1] - begin), lines = 0;
 
 	for (size_t i = 0; i < size; i++)
 		lines += begin[i] == '\n';

@@ -1,6 +1,7 @@
 /* What sentences are made of: frames, wordings of relations, and words for what objects are. They are data:
- * sentences.tsv for training and test sentences, unseen.tsv for those that test parsers. No author of a
- * parser should read unseen.tsv. */
+ * sentences.tsv for training and test sentences, unseen.tsv for those that test parsers; moves.tsv and
+ * moves-kept-back.tsv for what moves. No author of a parser should read unseen.tsv and moves-kept-back.tsv.
+ */
 #pragma once
 
 #include "base/err.h"
@@ -53,7 +54,47 @@ enum synth_list {
 	SYNTH_GROUPS,
 	SYNTH_FOREIGN, /* nouns of what is in no scene */
 	SYNTH_USES,    /* what one does with an object */
+	/* What moves how (synth/moves.h). Forms: 's' means one thing or none, 'p' several, 'e' tells of an
+	 * event. Slots: %T %P the thing, the things; %A another, with its article; %Y an event. */
+	SYNTH_MOTIONS,
+	SYNTH_PLAIN_THING = SYNTH_MOTIONS, /* whatever it does */
+	SYNTH_ANY_MOVE,
+	SYNTH_MOVES_NOT,
+	SYNTH_STARTS,
+	SYNTH_STOPS,
+	SYNTH_PAUSES,
+	SYNTH_RAISED,
+	SYNTH_PUT_DOWN,
+	SYNTH_FALLS_DOWN,
+	SYNTH_ROLLS_OFF,
+	SYNTH_SLIDES_OFF,
+	SYNTH_LEFTWARDS,
+	SYNTH_RIGHTWARDS,
+	SYNTH_NEARER,
+	SYNTH_FARTHER,
+	SYNTH_TOWARDS, /* another; so are the next four */
+	SYNTH_AWAY,
+	SYNTH_PASSES_BEHIND,
+	SYNTH_PASSES_FRONT,
+	SYNTH_CHANGES_PLACES,
+	SYNTH_FASTEST,
+	SYNTH_SLOWEST,
+	SYNTH_MOVES_MOST,
+	SYNTH_MOVES_FIRST,
+	SYNTH_MOVES_LAST,
+	SYNTH_WHILE,
+	SYNTH_BEFORE,
+	SYNTH_AFTER,
 	SYNTH_LISTS
+};
+
+/* A table of rows. */
+enum synth_table_of {
+	SYNTH_TABLE_SENTENCES,
+	SYNTH_TABLE_UNSEEN,
+	SYNTH_TABLE_MOVES,
+	SYNTH_TABLE_MOVES_KEPT,
+	SYNTH_TABLES
 };
 
 /* What words say of an object: for each property the values that they surely mean, and those that they may be
@@ -85,8 +126,11 @@ struct synth_wordings {
 	char *text;		/* owned; rows point into it */
 };
 
-/* The training and test sentences' wordings, or the unseen ones'. Returns 0, or -1 with *e set (memory). */
-int synth_wordings_load(struct synth_wordings *w, int is_unseen, struct err *e);
+/* "motion-falls"; NULL where none of motion. */
+const char *synth_motion_name(enum synth_list motion);
+
+/* Returns 0, or -1 with *e set (memory). */
+int synth_wordings_load(struct synth_wordings *w, enum synth_table_of table, struct err *e);
 void synth_wordings_free(struct synth_wordings *w);
 
 /* Which rows: of the list, and as far as it is given surely true of the object, with the text, of that

@@ -135,6 +135,29 @@ interrupted() {
 	[ -e out/truth.jsonl ]
 }
 
+@test "a scene that moves: frames, times, sentences; the first frame is the scene, and still where it has one time" {
+	small --moving 20 -o out
+	[ "$(ls out/frames | wc -l)" = 20 ]
+	cmp out/frames/time_00000.ply out/point_cloud.ply
+	differ out/frames/time_00000.ply out/frames/time_00019.ply
+	[ "$(jq '.frames | [length, .[0].time, .[-1].time]' -c out/transforms.json)" = "[5,0,1]" ]
+	[ "$(jq -s '[.[].time] | unique' -c out/truth.jsonl)" = "$(jq '[.frames[].time]' -c out/transforms.json)" ]
+	"$BIN/gs-check" out/moving.jsonl out/moving-kept-back.jsonl out/truth.jsonl
+	[ "$(jq -s 'all(.[]; (.objects | length) == 1 or .when == null) and any(.[]; .when[1] < 1) and all(.[]; .when == null or .when[0] < .when[1])' out/moving.jsonl)" = true ]
+	# The same for any number of threads; what is kept back is another wording.
+	OMP_NUM_THREADS=7 small --moving 20 -o again
+	[ "$(hash_of out)" = "$(hash_of again)" ]
+	differ out/moving.jsonl out/moving-kept-back.jsonl
+	# The things and cameras do not depend on how many times there are.
+	small --moving 1 -o still
+	[ ! -e still/frames ]
+	cmp still/point_cloud.ply out/point_cloud.ply
+	cmp still/sentences.jsonl out/sentences.jsonl
+	run small --moving 0 -o none
+	[ "$status" = 2 ]
+	[ "${lines[0]}" = "gs-synth: --moving: '0' is not a whole number from 1 to 1000" ]
+}
+
 @test "the folder holds what formats/scene/synth.md says" {
 	small -o out
 	[ "$(cd out && find . -type f | LC_ALL=C sort | tr '\n' ' ')" = "./boxes.jsonl ./candidates.jsonl ./candidates.test.jsonl ./images/view_000.png \

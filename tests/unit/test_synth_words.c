@@ -171,7 +171,7 @@ static void test_words_are_new(void)
 	struct synth_wordings w;
 	struct err e = {0};
 
-	if (!CHECK(!synth_wordings_load(&w, 0, &e), "%s", e.message))
+	if (!CHECK(!synth_wordings_load(&w, SYNTH_TABLE_SENTENCES, &e), "%s", e.message))
 		return;
 	for (int i = 0; i < w.n; i++)
 		for (int k = 0; k < i; k++) {
@@ -190,7 +190,8 @@ static void rows_are_known(int is_unseen)
 	struct synth_wordings w;
 	struct err e = {0};
 
-	if (!CHECK(!synth_wordings_load(&w, is_unseen, &e), "%s", e.message))
+	if (!CHECK(!synth_wordings_load(&w, is_unseen ? SYNTH_TABLE_UNSEEN : SYNTH_TABLE_SENTENCES, &e), "%s",
+		    e.message))
 		return;
 	for (int i = 0; i < w.n; i++) {
 		const struct synth_row *r = &w.rows[i];
@@ -213,6 +214,41 @@ static void rows_are_known(int is_unseen)
 	for (int list = SYNTH_PLAINLY; list < SYNTH_FRAMES; list++)
 		CHECK(!lists[list] == !is_unseen, "%d frames of list %d", lists[list], list);
 	synth_wordings_free(&w);
+}
+
+/* Every kind of motion is said, kept back in words of its own; slots are filled. */
+static void motion_is_said(void)
+{
+	struct synth_wordings seen, kept;
+	struct err e = {0};
+	int lists[SYNTH_LISTS][2] = {0}, n = 0;
+
+	if (!CHECK(!synth_wordings_load(&seen, SYNTH_TABLE_MOVES, &e), "%s", e.message) ||
+		!CHECK(!synth_wordings_load(&kept, SYNTH_TABLE_MOVES_KEPT, &e), "%s", e.message))
+		return;
+	for (int k = 0; k < 2; k++) {
+		const struct synth_wordings *w = k ? &kept : &seen;
+		for (int i = 0; i < w->n; i++) {
+			const struct synth_row *r = &w->rows[i];
+			CHECK(r->list >= SYNTH_MOTIONS && r->list < SYNTH_LISTS && r->form &&
+					strchr("spe", r->form),
+				"'%s'", r->text);
+			for (const char *p = strchr(r->text, '%'); p; p = strchr(p + 1, '%'))
+				CHECK(p[1] && strchr("TPAY", p[1]), "'%s'", r->text);
+			CHECK(strchr(r->text, '%') && strcspn(r->text, "\"\\") == strlen(r->text), "'%s'",
+				r->text);
+			lists[r->list][k] += r->form == 's';
+			n += k;
+			for (int j = 0; j < seen.n && k; j++)
+				CHECK(strcmp(seen.rows[j].text, r->text), "'%s' is in both", r->text);
+		}
+	}
+	for (int list = SYNTH_MOTIONS; list < SYNTH_LISTS; list++)
+		CHECK(lists[list][0] && lists[list][1], "%s is not said",
+			synth_motion_name((enum synth_list)list));
+	CHECK(n >= 60, "%d are kept back", n);
+	synth_wordings_free(&seen);
+	synth_wordings_free(&kept);
 }
 
 static int shares_words(const char *text, const struct synth_sentence *with, const struct synth_object *o)
@@ -358,6 +394,7 @@ int main(void)
 	test_words_are_new();
 	rows_are_known(0);
 	rows_are_known(1);
+	motion_is_said();
 	sentences_are_as_people_write();
 	return unit_end();
 }
