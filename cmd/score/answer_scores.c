@@ -45,10 +45,13 @@ int answer_scores_make(struct answer_scores *s, const struct sentences *sentence
 			.object_count = one->has_objects ? one->object_count : 1,
 			.objects = one->has_objects ? one->objects : &one->object,
 			.view_count = one->view_count,
-			.views = one->views};
+			.views = one->views,
+			.when = one->has_when ? one->when : NULL};
 	}
 	int bad = answers_make(&s->answers, s->sentences, sentences->n, truth->set.items, truth->n,
 		predictions->set.items, predictions->n, e);
+	if (bad && e->code == ERR_FORMAT)
+		err_prefix(e, file_name(truth->path));
 	if (!bad && !s->answers.n)
 		bad = err_set(e, ERR_FORMAT,
 			"%s: shows nothing that a sentence means: there is nothing to score",
@@ -66,13 +69,45 @@ void answer_scores_free(struct answer_scores *s)
 	*s = (struct answer_scores){0};
 }
 
-static void text_row(FILE *out, const struct answer_score *s, const char *name)
-{
-	const double figures[] = {s->right, s->miou, s->oiou, s->refused, s->f1[0], s->f1[1]};
+enum { FIGURES = 6, TIMED = 3 };
 
+/* Those of sentences that have a time come last. */
+static void list_figures(const struct answer_score *s, double figures[FIGURES + TIMED])
+{
+	const double all[] = {
+		s->right, s->miou, s->oiou, s->refused, s->f1[0], s->f1[1], s->accuracy, s->viou, s->tiou};
+
+	memcpy(figures, all, sizeof all);
+}
+
+/* What is printed: those of a time only where a sentence has one. */
+static size_t figure_count(const struct answer_scores *s)
+{
+	struct answer_score all;
+
+	answer_score_sum(&all, &s->answers, ANSWER_ANY, NULL);
+	return FIGURES + (all.timed ? TIMED : 0);
+}
+
+static void text_head(FILE *out, size_t n, const char *what)
+{
+	static const char *const names[] = {
+		"right", "mIoU", "oIoU", "refused", "F1@0.25", "F1@0.5", "Acc", "vIoU", "tIoU"};
+
+	fputs("pairs", out);
+	for (size_t i = 0; i < n; i++)
+		fprintf(out, " %9s", names[i]);
+	fprintf(out, "  %s\n", what);
+}
+
+static void text_row(FILE *out, const struct answer_score *s, size_t n, const char *name)
+{
+	double figures[FIGURES + TIMED];
+
+	list_figures(s, figures);
 	fprintf(out, "%5zu", s->pairs);
-	for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
-		if (s->pairs)
+	for (size_t i = 0; i < n; i++)
+		if (i < FIGURES ? s->pairs : s->timed)
 			fprintf(out, " %7.2f %%", 100 * figures[i]);
 		else
 			fprintf(out, " %9s", "-");
@@ -90,21 +125,21 @@ static void text_accuracy(FILE *out, const char *name, double x)
 static void put_text(FILE *out, const void *scores)
 {
 	const struct answer_scores *s = scores;
-	static const char *const head = "pairs %9s %9s %9s %9s %9s %9s  %s\n";
+	const size_t n = figure_count(s);
 	struct answer_score row;
 	double none, some;
 
 	answer_target_accuracy(&none, &some, &s->answers);
-	fprintf(out, head, "right", "mIoU", "oIoU", "refused", "F1@0.25", "F1@0.5", "means");
+	text_head(out, n, "means");
 	for (int i = 0; i < ANSWER_TARGETS; i++) {
 		answer_score_sum(&row, &s->answers, (enum answer_targets)i, NULL);
-		text_row(out, &row, target_names[i]);
+		text_row(out, &row, n, target_names[i]);
 	}
 	fputc('\n', out);
-	fprintf(out, head, "right", "mIoU", "oIoU", "refused", "F1@0.25", "F1@0.5", "kind");
+	text_head(out, n, "kind");
 	for (size_t i = 0; i < s->kind_count; i++) {
 		answer_score_sum(&row, &s->answers, ANSWER_ANY, s->kinds[i]);
-		text_row(out, &row, *s->kinds[i] ? s->kinds[i] : no_kind);
+		text_row(out, &row, n, *s->kinds[i] ? s->kinds[i] : no_kind);
 	}
 	answer_score_sum(&row, &s->answers, ANSWER_ANY, NULL);
 	fputc('\n', out);
@@ -121,15 +156,19 @@ static void put_number(struct jsontext *to, const char *key, double x, int is_th
 	jsontext_raw(to, key, is_there ? number_text(text, x) : "null");
 }
 
-static void put_row(struct jsontext *to, const struct answer_score *s, const char *name)
+static void put_row(struct jsontext *to, const struct answer_score *s, size_t n, const char *name)
 {
-	static const char *const keys[] = {"right", "miou", "oiou", "refused", "f1_25", "f1_50"};
-	const double figures[] = {s->right, s->miou, s->oiou, s->refused, s->f1[0], s->f1[1]};
+	static const char *const keys[] = {
+		"right", "miou", "oiou", "refused", "f1_25", "f1_50", "accuracy", "viou", "tiou"};
+	double figures[FIGURES + TIMED];
 
+	list_figures(s, figures);
 	jsontext_open(to, name, '{');
 	jsontext_number(to, "pairs", (double)s->pairs);
-	for (size_t i = 0; i < sizeof figures / sizeof *figures; i++)
-		put_number(to, keys[i], figures[i], s->pairs > 0);
+	for (size_t i = 0; i < n; i++)
+		put_number(to, keys[i], figures[i], (i < FIGURES ? s->pairs : s->timed) > 0);
+	if (n > FIGURES)
+		jsontext_number(to, "timed", (double)s->timed);
 	jsontext_number(to, "missing", (double)s->missing);
 	jsontext_close(to, '}');
 }
@@ -138,13 +177,14 @@ static void put_json(FILE *out, const void *scores)
 {
 	const struct answer_scores *s = scores;
 	struct jsontext to = {.out = out};
+	const size_t n = figure_count(s);
 	struct answer_score row;
 	double none, some;
 
 	jsontext_open(&to, NULL, '{');
 	for (int i = 0; i < ANSWER_TARGETS; i++) {
 		answer_score_sum(&row, &s->answers, (enum answer_targets)i, NULL);
-		put_row(&to, &row, target_names[i]);
+		put_row(&to, &row, n, target_names[i]);
 	}
 	answer_target_accuracy(&none, &some, &s->answers);
 	put_number(&to, "n_acc", none, !isnan(none));
@@ -153,7 +193,7 @@ static void put_json(FILE *out, const void *scores)
 	jsontext_open(&to, "kinds", '{');
 	for (size_t i = 0; i < s->kind_count; i++) {
 		answer_score_sum(&row, &s->answers, ANSWER_ANY, s->kinds[i]);
-		put_row(&to, &row, *s->kinds[i] ? s->kinds[i] : no_kind);
+		put_row(&to, &row, n, *s->kinds[i] ? s->kinds[i] : no_kind);
 	}
 	fputs("}}\n", out);
 }

@@ -101,6 +101,18 @@ static int read_target(struct sentence *s, const struct jsonl *j, const cJSON *o
 	return s->object ? 0 : -1;
 }
 
+static int read_when(struct sentence *s, const struct jsonl *j, const cJSON *object, struct err *e)
+{
+	const cJSON *when = json_member(object, "when");
+
+	if (!when)
+		return 0;
+	s->has_when = 1;
+	return json_numbers(when, 2, s->when) || s->when[1] < s->when[0]
+		       ? jsonl_err(j, e, "key 'when' is not [from,to]")
+		       : 0;
+}
+
 static int read_one(const struct jsonl *j, const cJSON *object, void *record, struct err *e)
 {
 	struct sentence *s = record;
@@ -116,7 +128,8 @@ static int read_one(const struct jsonl *j, const cJSON *object, void *record, st
 		json_string(object, "text", 1, &text, j->where, e) < 0)
 		return -1;
 	s->text = copy_text(j, text, e);
-	return -(!s->text || read_list(&s->views, &s->view_count, j, object, "views", NAME_VIEW, e) ||
+	return -(!s->text || read_when(s, j, object, e) ||
+		 read_list(&s->views, &s->view_count, j, object, "views", NAME_VIEW, e) ||
 		 jsonl_name(j, object, "view", NAME_VIEW, 0, &s->view, e) ||
 		 jsonl_name(j, object, "kind", NAME_DATA, 0, &s->kind, e));
 }

@@ -10,9 +10,11 @@ struct sentence {
 	int has_objects;     /* 1: it says which objects it means */
 	size_t object_count; /* of those; 0: it means nothing that is there */
 	char **objects;
-	char *view;		 /* the view whose picture it is said of; NULL: of no one picture */
-	char *kind;		 /* what is hard about it ("negation"); NULL: not said */
-	char *text;		 /* UTF-8 */
+	char *view;   /* the view whose picture it is said of; NULL: of no one picture */
+	char *kind;   /* what is hard about it ("negation"); NULL: not said */
+	char *text;   /* UTF-8 */
+	int has_when; /* what it says is so from when[0] to when[1], in a scene that moves */
+	double when[2];
 	enum camera_split split; /* "train" (default) or "test" */
 	size_t view_count;	 /* 0: every view */
 	char **views;

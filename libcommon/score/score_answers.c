@@ -12,6 +12,7 @@ const double answer_cut[ANSWER_CUTS] = {0.25, 0.5};
 struct view {
 	const char *name;
 	size_t begin, end;
+	const double *time; /* NULL: it has none */
 };
 
 struct seen {
@@ -45,7 +46,10 @@ static void list_objects(struct truth *t, const struct mask *truth, const struct
 			continue;
 		t->names[t->name_count++] = key->name;
 		if (!t->view_count || strcmp(t->views[t->view_count - 1].name, key->view))
-			t->views[t->view_count++] = (struct view){key->view, t->n, t->n};
+			t->views[t->view_count++] = (struct view){key->view, t->n, t->n, NULL};
+		const struct mask_place *place = truth[chosen].place;
+		if (place && place->has_time)
+			t->views[t->view_count - 1].time = &place->time;
 		if (rle_area(&truth[chosen].rle))
 			t->items[t->n++] = (struct seen){key->name, &truth[chosen].rle};
 		t->views[t->view_count - 1].end = t->n;
@@ -197,6 +201,12 @@ static int answer_one(struct answers *a, const struct truth *t, const struct ans
 			continue;
 		}
 		struct answer one = {.sentence = s, .view = v->name};
+		if (s->when && s->object_count && !v->time)
+			return err_set(e, ERR_FORMAT,
+				"no mask of view '%s' has a time, which sentence '%s' needs: its 'when'",
+				v->name, s->ref);
+		one.is_outside =
+			s->when && s->object_count && !(*v->time >= s->when[0] && *v->time <= s->when[1]);
 		mask_index_ref(refs, v->name, s->ref, &begin, &end);
 		if ((begin == end ? measure_missing(&one, t, v, e)
 				  : measure(&one, t, v, &predictions[refs->keys[begin].at].rle, e)) ||
@@ -264,10 +274,43 @@ void answers_free(struct answers *a)
 	*a = (struct answers){0};
 }
 
+/* Of one sentence, or of several. */
+struct timing {
+	size_t n, views, inside, hits, both, either;
+	double iou, accuracy, viou, tiou;
+};
+
+static void time_view(struct timing *t, const struct answer *a)
+{
+	const int is_answered = !a->is_refused && !a->is_missing, both = is_answered && !a->is_outside;
+
+	t->views++;
+	t->inside += (size_t)!a->is_outside;
+	t->hits += (size_t)(is_answered == !a->is_outside);
+	t->both += (size_t)both;
+	t->either += (size_t)(is_answered || !a->is_outside);
+	t->iou += both ? a->iou : 0;
+}
+
+/* Ends a sentence. Where no view is of its time there is nothing to be found. */
+static void time_end(struct timing *t)
+{
+	if (t->inside) {
+		t->n++;
+		t->accuracy += (double)t->hits / (double)t->views;
+		t->viou += t->iou / (double)t->either;
+		t->tiou += (double)t->both / (double)t->either;
+	}
+	t->views = t->inside = t->hits = t->both = t->either = 0;
+	t->iou = 0;
+}
+
 void answer_score_sum(
 	struct answer_score *s, const struct answers *a, enum answer_targets targets, const char *kind)
 {
 	size_t intersection = 0, either = 0;
+	const struct answer_sentence *last = NULL;
+	struct timing t = {0};
 
 	*s = (struct answer_score){0};
 	for (size_t i = 0; i < a->n; i++) {
@@ -276,6 +319,13 @@ void answer_score_sum(
 		enum answer_targets own = n == 1 ? ANSWER_ONE : n ? ANSWER_SEVERAL : ANSWER_NONE;
 		const char *own_kind = one->sentence->kind ? one->sentence->kind : "";
 		if ((targets != ANSWER_ANY && targets != own) || (kind && strcmp(kind, own_kind)))
+			continue;
+		if (one->sentence != last)
+			time_end(&t);
+		last = one->sentence;
+		if (n && last->when)
+			time_view(&t, one);
+		if (one->is_outside)
 			continue;
 		s->pairs++;
 		s->missing += (size_t)one->is_missing;
@@ -287,6 +337,11 @@ void answer_score_sum(
 		for (int k = 0; k < ANSWER_CUTS; k++)
 			s->f1[k] += one->f1[k];
 	}
+	time_end(&t);
+	s->timed = t.n;
+	s->accuracy = t.n ? t.accuracy / (double)t.n : 0;
+	s->viou = t.n ? t.viou / (double)t.n : 0;
+	s->tiou = t.n ? t.tiou / (double)t.n : 0;
 	double per = s->pairs ? 1 / (double)s->pairs : 0;
 	s->right *= per;
 	s->refused *= per;
@@ -303,6 +358,8 @@ void answer_target_accuracy(double *none, double *some, const struct answers *a)
 	for (size_t i = 0; i < a->n; i++) {
 		const struct answer *one = &a->items[i];
 		const int is_some = one->sentence->object_count > 0;
+		if (one->is_outside)
+			continue;
 		pairs[is_some]++;
 		hits[is_some] += (size_t)(is_some ? !one->is_refused && !one->is_missing : one->is_refused);
 	}

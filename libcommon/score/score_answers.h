@@ -16,12 +16,16 @@ struct answer_sentence {
 	size_t object_count, view_count;
 	char *const *objects; /* that it means */
 	char *const *views;
+	const double
+		*when; /* from, to: it means them then, and nothing in views of other times; NULL: always */
 };
 
 /* A sentence in a view that shows something of what it means, or of a sentence that means nothing. */
 struct answer {
 	const struct answer_sentence *sentence;
 	const char *view;
+	int is_outside; /* the view's time is not that of the sentence: such an answer only counts for
+			   accuracy */
 	int is_missing; /* there is no prediction */
 	int is_refused; /* its mask is empty */
 	int is_right;	/* one: its IoU with the object's mask is above 0 and no less than with another's;
@@ -52,6 +56,12 @@ struct answer_score {
 	size_t pairs, missing;
 	double right, miou, refused, f1[ANSWER_CUTS];
 	double oiou; /* sum of intersections / sum of unions; 1 where all are empty */
+	/* Of the sentences that have a time, as 4D LangSplat (Li et al., CVPR 2025) scores: over a sentence's
+	 * views the share in which it is answered or refused as its time says; over the views that are of its
+	 * time or answered the sum of the IoU in those that are both (viou), and their share (tiou). Means
+	 * over the sentences. */
+	size_t timed;
+	double accuracy, viou, tiou;
 };
 
 enum answer_targets { ANSWER_ANY, ANSWER_ONE, ANSWER_SEVERAL, ANSWER_NONE, ANSWER_TARGETS };

@@ -98,3 +98,31 @@ Try 'refer-render --help'." render still --time 0
 		"$BIN/refer-render" -q --split all --scene none --text text.safetensors --model two/lifted/model.safetensors
 	"$BIN/refer-render" -q --time 1 --split all --scene none --text text.safetensors --model two/lifted/model.safetensors -o /dev/null
 }
+
+@test "scores of sentences that have a time: accuracy, vIoU and tIoU" {
+	# The cup is meant at 1 and 2 and answered at 2 (half of it) and 3; the plate always, and always answered.
+	for t in 0 1 2 3; do
+		echo '{"view":"v'$t'","object":"cup","time":'$t',"segmentation":{"size":[1,8],"counts":[0,4,4]}}'
+		echo '{"view":"v'$t'","object":"plate","time":'$t',"segmentation":{"size":[1,8],"counts":[4,4]}}'
+		echo '{"view":"v'$t'","ref":"plate","segmentation":{"size":[1,8],"counts":[4,4]}}' >&3
+		echo '{"view":"v'$t'","ref":"cup","segmentation":{"size":[1,8],"counts":'$([ $t -lt 2 ] && echo '[8]' || echo '[0,2,6]')'}}' >&3
+	done >at.jsonl 3>ap.jsonl
+	echo '{"ref":"cup","object":"cup","text":"the cup that falls","kind":"falls","split":"test","when":[1,2]}' >as.jsonl
+	echo '{"ref":"plate","object":"plate","text":"the plate","kind":"plain","split":"test"}' >>as.jsonl
+	run --separate-stderr "$BIN/miou-score" --answers --sentences as.jsonl --truth at.jsonl ap.jsonl
+	[ "$status" -eq 0 ]
+	diff - <(echo "$output" | sed -n 7,9p) <<-END
+	pairs     right      mIoU      oIoU   refused   F1@0.25    F1@0.5       Acc      vIoU      tIoU  kind
+	    2   50.00 %   25.00 %   25.00 %   50.00 %   50.00 %    0.00 %   50.00 %   16.67 %   33.33 %  falls
+	    4  100.00 %  100.00 %  100.00 %    0.00 %  100.00 %  100.00 %         -         -         -  plain
+	END
+	"$BIN/miou-score" --answers --json --sentences as.jsonl --truth at.jsonl ap.jsonl | jq -e '.all.timed == 1 and .all.accuracy == 0.5 and (.all.viou * 6 - 1 | fabs < 1e-12) and .kinds.plain.viou == null and .kinds.falls.pairs == 2'
+	run "$BIN/miou-score" --answers --sentences as.jsonl --truth <(sed 's/"time":[0-9],//' at.jsonl) ap.jsonl
+	[ "$status" -eq 3 ]
+	[[ $output = *": no mask of view 'v0' has a time, which sentence 'cup' needs: its 'when'" ]]
+	for when in '[2,1]' '[1]' '1' '["a",2]'; do
+		run "$BIN/miou-score" --answers --sentences <(sed "s/\[1,2\]/$when/" as.jsonl) --truth at.jsonl ap.jsonl
+		[ "$status" -eq 3 ]
+		[[ $output = *":1: key 'when' is not [from,to]" ]]
+	done
+}

@@ -211,6 +211,93 @@ static void against_pixels(const struct world *w)
 	answers_free(&a);
 }
 
+/* What is meant of a sentence in a view: its union; 0 where nothing of it is seen. */
+static int meant_in(const struct world *w, int s, int v, uint8_t all[P])
+{
+	memset(all, 0, P);
+	for (int o = 0; o < OBJECTS; o++)
+		for (int p = 0; p < P && is_meant(&w->sentences[s], object_names[o]); p++)
+			all[p] |= w->truth[v][o][p];
+	return !is_blank(all);
+}
+
+static int is_said(const struct world *w, int s, int v)
+{
+	for (size_t i = 0; i < w->prediction_n; i++)
+		if (!strcmp(w->predictions[i].ref, w->refs[s]) &&
+			!strcmp(w->predictions[i].view, view_names[v]))
+			return !is_blank(w->said[v][s]);
+	return 0;
+}
+
+/* Of a sentence that means something from 0 or 1 to 1 or 2, view v being of the time v. Adds to sum. */
+static int time_twin(const struct world *w, int s, const double when[2], double sum[3])
+{
+	double views = 0, hits = 0, both = 0, either = 0, overlap = 0;
+	int inside = 0;
+	uint8_t all[P];
+
+	for (int v = 0; v < VIEWS; v++) {
+		const int is_now = v >= when[0] && v <= when[1], said = is_said(w, s, v);
+		if ((w->sentences[s].view && strcmp(w->sentences[s].view, view_names[v])) ||
+			!meant_in(w, s, v, all))
+			continue;
+		views++;
+		inside += is_now;
+		hits += said == is_now;
+		both += said && is_now;
+		either += said || is_now;
+		overlap += said && is_now ? iou(w->said[v][s], all) : 0;
+	}
+	if (!inside)
+		return 0;
+	sum[0] += hits / views;
+	sum[1] += overlap / either;
+	sum[2] += both / either;
+	return 1;
+}
+
+static void times_against_pixels(const struct world *w, uint64_t seed)
+{
+	struct mask_place when[VIEWS];
+	struct mask truths[VIEWS * OBJECTS];
+	struct answer_sentence sentences[SENTENCES];
+	double times[SENTENCES][2], sum[3] = {0};
+	struct answers a;
+	struct answer_score all;
+	struct err e;
+	struct rng r;
+	size_t n = 0, outside = 0;
+
+	rng_seed(&r, seed, 2);
+	for (size_t i = 0; i < w->truth_n; i++) {
+		const int v = (int)i / OBJECTS;
+		when[v] = (struct mask_place){.has_time = 1, .time = v};
+		truths[i] = w->truths[i];
+		truths[i].place = &when[v];
+	}
+	for (int s = 0; s < SENTENCES; s++) {
+		sentences[s] = w->sentences[s];
+		times[s][0] = rng_below(&r, 2);
+		times[s][1] = 1 + rng_below(&r, 2);
+		sentences[s].when = s % 4 ? times[s] : NULL;
+		if (s % 4 && sentences[s].object_count)
+			n += (size_t)time_twin(w, s, times[s], sum);
+	}
+	if (!CHECK(!answers_make(
+			   &a, sentences, SENTENCES, truths, w->truth_n, w->predictions, w->prediction_n, &e),
+		    "%s", e.message))
+		return;
+	answer_score_sum(&all, &a, ANSWER_ANY, NULL);
+	for (size_t i = 0; i < a.n; i++)
+		outside += (size_t)a.items[i].is_outside;
+	CHECK(all.timed == n && all.pairs == a.n - outside, "%zu timed, not %zu", all.timed, n);
+	CHECK(fabs(all.accuracy * (double)n - sum[0]) < 1e-12, "accuracy %g", all.accuracy);
+	CHECK(fabs(all.viou * (double)n - sum[1]) < 1e-12, "vIoU %g", all.viou);
+	CHECK(fabs(all.tiou * (double)n - sum[2]) < 1e-12, "tIoU %g", all.tiou);
+	answers_free(&a);
+}
+
 /* Records in another order: the same answers. */
 static void order_does_not_matter(const struct world *w)
 {
@@ -353,6 +440,7 @@ int main(void)
 		world_make(&w, seed);
 		against_pixels(&w);
 		order_does_not_matter(&w);
+		times_against_pixels(&w, seed);
 		world_free(&w);
 	}
 	predictions_of_another_size();
