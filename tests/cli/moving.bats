@@ -126,3 +126,45 @@ Try 'refer-render --help'." render still --time 0
 		[[ $output = *":1: key 'when' is not [from,to]" ]]
 	done
 }
+
+# made DIR N: a scene of gs-synth that moves, at N times, imported and lifted, and the masks of all its views in DIR/masks.jsonl.
+made() {
+	local dir=$1
+	"$BIN/gs-synth" -q --seed 71 --moving "$2" --views 12 --size 160x120 --gaussians 6000 -o "$dir"
+	cat "$dir/sentences.jsonl" "$dir/moving.jsonl" >"$dir/all.jsonl"
+	"$BIN/text-encode" -q --model encoder -o "$dir/text.safetensors" "$dir/all.jsonl"
+	lifted "$dir" "$dir/lifted"
+}
+
+# lifted DIR TO: the same from DIR's files into TO.
+lifted() {
+	local dir=$1 to=$2 from=$1/frames
+	[ -d "$from" ] || from=$dir/point_cloud.ply
+	mkdir -p "$to"
+	"$BIN/gs-import" -q --cameras "$dir/transforms.json" -o "$to/scene" "$from"
+	"$BIN/gs-weigh" -q -o "$to/weights" "$to/scene"
+	"$BIN/refer-lift" -q --scene "$to/scene" --weights "$to/weights" --text "$dir/text.safetensors" -o "$to/model.safetensors" \
+		--masks <(jq -c --arg test "$(cat "$dir/test-views")" 'select(.view as $v | $test | split(",") | index($v) | not)' "$dir/truth.jsonl")
+	"$BIN/refer-render" -q --split all --scene "$to/scene" --text "$dir/text.safetensors" --model "$to/model.safetensors" -o "$to/masks.jsonl"
+}
+
+@test "a scene of gs-synth that moves, from frames to scores: the masks are as good as those of the same scene at rest" {
+	made moves 24
+	made rests 1
+	# Which thing is said without its motion, so that both scenes have the sentence.
+	jq -c "select(.kind == \"motion-plain\") | del(.when)" moves/moving.jsonl >plain.jsonl
+	jq -c "select(.kind == \"motion-plain\") | del(.when)" rests/moving.jsonl | cmp - plain.jsonl
+	score() { "$BIN/miou-score" --answers --json --sentences plain.jsonl --truth "$1/truth.jsonl" "$1/lifted/masks.jsonl" 2>/dev/null | jq .all.miou; }
+	jq -n --argjson moves "$(score moves)" --argjson rests "$(score rests)" '$moves > 0.9 and $moves > $rests - 0.03' | grep -x true
+	# and they do move: masks of the first time are of little use later
+	"$BIN/refer-render" -q --time 0 --split all --scene moves/lifted/scene --text moves/text.safetensors --model moves/lifted/model.safetensors -o first.jsonl
+	later() { "$BIN/miou-score" --json --truth <(jq -c 'select(.time == 1)' moves/truth.jsonl) <(jq -c 'select(.ref | test("^motion-plain"))' "$1") 2>/dev/null | jq .miou; }
+	jq -n --argjson now "$(later moves/lifted/masks.jsonl)" --argjson first "$(later first.jsonl)" '$now > $first + 0.1' | grep -x true
+	for threads in 1 2 7; do
+		OMP_NUM_THREADS=$threads lifted moves again
+		for file in scene/motion.safetensors weights model.safetensors masks.jsonl; do
+			diff -r "moves/lifted/$file" "again/$file"
+		done
+		rm -r again
+	done
+}
