@@ -259,13 +259,14 @@ static int check_order(const struct splats *first, const struct splats *s, const
 		changed, which, first_path);
 }
 
-int frames_read(struct splats *s, const struct splats *first, const double offset[3], const char *first_path,
+int frames_read(struct splats *s, const struct ply_like *like, const double offset[3], const char *first_path,
 	const char *path, struct err *e)
 {
+	const struct splats *first = like->splats;
 	struct rows_report rows = {0};
 	double own[3] = {0};
 
-	if (anysplats_read(s, own, &rows, path, e))
+	if (anysplats_read_like(s, own, &rows, path, like, e))
 		return -1;
 	const size_t bad = rows.not_finite + rows.zero_quat, which = bad ? rows.dropped[0] : 0;
 	free(rows.dropped);

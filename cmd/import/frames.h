@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/err.h"
+#include "formats/splats/ply.h"
 #include "splat/splats.h"
 
 #define FRAMES_NOT_FINITE                                                                                    \
@@ -22,5 +23,5 @@ int frames_check_times(const double *times, size_t n, const char *path, struct e
 
 /* A frame, with the offset of the first one. ERR_FORMAT where it has not the first one's Gaussians, or not in
  * that order: told by opacities and colours, which stay, and where they tell, by standard deviations. */
-int frames_read(struct splats *s, const struct splats *first, const double offset[3], const char *first_path,
-	const char *path, struct err *e);
+int frames_read(struct splats *s, const struct ply_like *first, const double offset[3],
+	const char *first_path, const char *path, struct err *e);

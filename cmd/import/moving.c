@@ -131,6 +131,7 @@ int moving_first(
 struct reading {
 	const struct moving *m;
 	const struct splats *base; /* of SPLATS, or of the first frame */
+	struct ply_like like;	   /* that, with its file */
 	struct splats *frames;	   /* of each worker: its own */
 	int *worker;		   /* of each item */
 	struct motion_out *out;
@@ -154,7 +155,7 @@ static int read_frame(void *context, int worker, size_t item, struct err *e)
 	r->worker[item] = worker;
 	if (r->m->paths) {
 		splats_free(to);
-		return frames_read(to, r->base, r->m->offset, r->m->paths[0], r->m->paths[item + 1], e);
+		return frames_read(to, &r->like, r->m->offset, r->m->paths[0], r->m->paths[item + 1], e);
 	}
 	return (!to->n && copy_base(to, r->base, e)) || read_archive(r->m, r->base, item + 1, to, e) ? -1 : 0;
 }
@@ -186,11 +187,13 @@ int moving_write(
 {
 	SCOPED char *path = file_join(folder, "motion.safetensors", "", e);
 	struct motion_out out = {0};
-	struct reading r = {.m = m, .base = &s->splats, .out = &out};
-	const int bad = !path || motion_out_begin(&out, path, &s->splats, m->n, e) || read_frames(&r, e) ||
+	struct reading r = {.m = m, .base = &s->splats, .like.splats = &s->splats, .out = &out};
+	const int bad = !path || (m->paths && file_map(m->paths[0], &r.like.map, e)) ||
+			motion_out_begin(&out, path, &s->splats, m->n, e) || read_frames(&r, e) ||
 			motion_out_end(&out, m->times, moved, e);
 
 	motion_out_free(&out);
+	file_unmap(&r.like.map);
 	return bad ? -1 : 0;
 }
 

@@ -24,6 +24,12 @@ int anysplats_is_meta(const char *path)
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e)
 {
+	return anysplats_read_like(s, offset, report, path, NULL, e);
+}
+
+int anysplats_read_like(struct splats *s, double offset[3], struct rows_report *report, const char *path,
+	const struct ply_like *like, struct err *e)
+{
 	const char *name = file_name(path);
 	SCOPED_BY(file_unmap) struct file_map map = {0};
 
@@ -44,7 +50,7 @@ int anysplats_read(
 		return sog_read_map(s, offset, report, name, &map, e);
 	if (!is_ply && (glb_is(&map) || path_ends(name, ".glb")))
 		return glb_read_map(s, offset, report, name, &map, e);
-	return ply_read_map(s, offset, report, name, &map, e);
+	return ply_read_like(s, offset, report, name, &map, like, e);
 }
 
 int anysplats_format_of(const char *path)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "base/err.h"
+#include "formats/splats/ply.h"
 #include "splat/gaussian_rows.h"
 #include "splat/splats.h"
 
@@ -9,6 +10,10 @@
  * Gaussian, and SOG's meta.json by their names. As ply_read_map. */
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
+
+/* The same of a file that is likely like another: ply_read_like. */
+int anysplats_read_like(struct splats *s, double offset[3], struct rows_report *report, const char *path,
+	const struct ply_like *like, struct err *e);
 
 /* Whether a file is SOG's meta.json, by its name. */
 int anysplats_is_meta(const char *path);

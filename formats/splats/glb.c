@@ -215,7 +215,7 @@ static int read_all(
 		return -1;
 	shift_before(in, &place);
 	const struct gaussian_rows rows = {
-		in->file.name, in->means.n, 3 * (in->coefficients - 1), next_row, in};
+		in->file.name, in->means.n, 3 * (in->coefficients - 1), next_row, in, NULL};
 	if (gaussian_rows_read(s, offset, report, &rows, e))
 		return -1;
 	turn(s, offset, &place);

@@ -25,6 +25,11 @@ struct source {
 	int is_packed;
 	struct plypacked packed;
 	double *row; /* in the file's order; unused where packed */
+	/* Of a file that is like another one: NULL where none is. */
+	const struct ply_like *like;
+	size_t moves[7];    /* where a row has its mean and its rotation */
+	size_t (*stays)[2]; /* (stay_count) where it has the rest: from, to */
+	size_t stay_count;
 };
 
 static int find_layout(
@@ -69,10 +74,64 @@ static int open_source(struct source *in, struct plyfile *f, const struct plyfil
 	return in->row ? 0 : -1;
 }
 
+/* Whether the other file is the same up to its rows, and as long. */
+static int is_like(const struct source *in, const struct ply_like *like)
+{
+	const struct plyfile *f = in->file;
+
+	return like && like->splats && !in->is_packed && f->encoding != PLY_ASCII && !in->vertex->has_list &&
+	       in->vertex->rows == like->splats->n &&
+	       in->layout.rest == 3 * (like->splats->sh_coefficients - 1) && f->map.len == like->map.len &&
+	       !memcmp(f->map.data, like->map.data, f->at);
+}
+
+static int find_stays(struct source *in, const struct ply_like *like, struct err *e)
+{
+	size_t at = 0, size;
+
+	if (!is_like(in, like))
+		return 0;
+	if (!(in->stays = mem_alloc(in->vertex->n, sizeof *in->stays, in->file->path, e)))
+		return -1;
+	for (size_t p = 0; p < in->vertex->n; p++, at += size) {
+		size_t moving = 0;
+		size = plyfile_type_size(in->vertex->properties[p].type);
+		while (moving < 7 && in->layout.slot[moving < 3 ? moving : ROW_ROT + moving - 3] != (long)p)
+			moving++;
+		if (moving < 7)
+			in->moves[moving] = at;
+		else if (in->stay_count && in->stays[in->stay_count - 1][1] == at)
+			in->stays[in->stay_count - 1][1] += size;
+		else
+			memcpy(in->stays[in->stay_count++], (size_t[2]){at, at + size}, sizeof *in->stays);
+	}
+	in->like = like;
+	return 0;
+}
+
+/* 1 where the row is the other file's but for its mean and rotation, which values get. */
+static int next_like(struct source *in, double *values)
+{
+	struct plyfile *f = in->file;
+	const unsigned char *row = f->map.data + f->at, *other = in->like->map.data + f->at;
+
+	for (size_t k = 0; k < in->stay_count; k++)
+		if (memcmp(row + in->stays[k][0], other + in->stays[k][0],
+			    in->stays[k][1] - in->stays[k][0]) != 0)
+			return 0;
+	for (int k = 0; k < 7; k++) {
+		const int slot = k < 3 ? k : ROW_ROT + k - 3;
+		values[slot] = plyfile_value(
+			f, f->at + in->moves[k], in->vertex->properties[in->layout.slot[slot]].type);
+	}
+	f->at += in->vertex->min_bytes;
+	return 1;
+}
+
 static void close_source(struct source *in)
 {
 	plypacked_close(&in->packed);
-	free(in->row);
+	mem_free_all(in->row, in->stays);
 }
 
 static int next_row(void *reader, size_t row, double *values, struct err *e)
@@ -85,6 +144,8 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 		values[ROW_OPACITY] = gaussian_logit(values[ROW_OPACITY]);
 		return 0;
 	}
+	if (in->like && next_like(in, values))
+		return 1;
 	if (plyfile_row(in->file, in->vertex, row, in->row, e))
 		return -1;
 	for (int i = 0; i < ROW_REST + in->layout.rest; i++)
@@ -142,15 +203,16 @@ static int check_foreign(const struct plyfile *f, const struct plyfile_element *
 
 /* The rows of the element `vertex`, which is next. */
 static int read_vertices(struct splats *s, double offset[3], struct rows_report *report, struct plyfile *f,
-	const struct plyfile_element *vertex, size_t chunks, struct err *e)
+	const struct plyfile_element *vertex, size_t chunks, const struct ply_like *like, struct err *e)
 {
 	struct source in;
 
 	if (check_foreign(f, vertex, e))
 		return -1;
-	int bad = open_source(&in, f, vertex, chunks, e);
+	int bad = open_source(&in, f, vertex, chunks, e) || find_stays(&in, like, e);
 	if (!bad) {
-		const struct gaussian_rows rows = {f->path, vertex->rows, in.layout.rest, next_row, &in};
+		const struct gaussian_rows rows = {
+			f->path, vertex->rows, in.layout.rest, next_row, &in, like ? like->splats : NULL};
 		bad = gaussian_rows_read(s, offset, report, &rows, e);
 	}
 	close_source(&in);
@@ -158,8 +220,8 @@ static int read_vertices(struct splats *s, double offset[3], struct rows_report 
 }
 
 /* All elements in the file's order. */
-static int read_elements(
-	struct splats *s, double offset[3], struct rows_report *report, struct plyfile *f, struct err *e)
+static int read_elements(struct splats *s, double offset[3], struct rows_report *report, struct plyfile *f,
+	const struct ply_like *like, struct err *e)
 {
 	const struct plyfile_element *vertex = plyfile_find(f, "vertex");
 	size_t chunks = 0;
@@ -171,7 +233,7 @@ static int read_elements(
 		const struct plyfile_element *el = &f->elements[i];
 		if (!strcmp(el->name, "chunk"))
 			chunks = f->at;
-		bad = el == vertex ? read_vertices(s, offset, report, f, vertex, chunks, e)
+		bad = el == vertex ? read_vertices(s, offset, report, f, vertex, chunks, like, e)
 				   : plyfile_skip(f, el, e);
 	}
 	return -(bad || plyfile_end(f, e));
@@ -180,13 +242,19 @@ static int read_elements(
 int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e)
 {
+	return ply_read_like(s, offset, report, name, map, NULL, e);
+}
+
+int ply_read_like(struct splats *s, double offset[3], struct rows_report *report, const char *name,
+	struct file_map *map, const struct ply_like *like, struct err *e)
+{
 	struct rows_report local = {0};
 	struct plyfile f;
 
 	gaussian_rows_none(s, report);
 	if (plyfile_open(&f, name, map, e))
 		return -1;
-	int bad = read_elements(s, offset, &local, &f, e);
+	int bad = read_elements(s, offset, &local, &f, like, e);
 	plyfile_close(&f);
 	if (bad)
 		splats_free(s);

@@ -16,6 +16,17 @@
 int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e);
 
+/* The same Gaussians from another file, in memory, and as read. */
+struct ply_like {
+	struct file_map map;
+	const struct splats *splats; /* NULL: there is none */
+};
+
+/* As ply_read_map, and the same to the byte, but quicker where the file is like the other up to its rows, and
+ * rows differ in their means and rotations. like may be NULL. */
+int ply_read_like(struct splats *s, double offset[3], struct rows_report *report, const char *name,
+	struct file_map *map, const struct ply_like *like, struct err *e);
+
 /* Writes the usual 3DGS layout (x y z nx ny nz f_dc f_rest opacity scale rot), binary little-endian, with
  * activations undone. x y z are float, or double where offset is not 0. "-" is stdout. */
 int ply_write(const struct splats *s, const double offset[3], const char *path, struct err *e);

@@ -60,6 +60,9 @@ int plyfile_check_rows(const struct plyfile *f, const struct plyfile_element *el
 int plyfile_row(
 	struct plyfile *f, const struct plyfile_element *el, size_t row, double *values, struct err *e);
 
+/* The value at an offset of a binary file. */
+double plyfile_value(const struct plyfile *f, size_t at, enum plyfile_type type);
+
 /* Passes over all rows of el. */
 int plyfile_skip(struct plyfile *f, const struct plyfile_element *el, struct err *e);
 

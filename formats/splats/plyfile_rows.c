@@ -50,6 +50,11 @@ static double decode(const unsigned char *p, enum plyfile_type type, int is_big)
 	}
 }
 
+double plyfile_value(const struct plyfile *f, size_t at, enum plyfile_type type)
+{
+	return decode(f->map.data + at, type, f->encoding == PLY_BIG);
+}
+
 /* The next value at f->at: 0, or -1 with *e. */
 static int next_value(struct plyfile *f, const struct plyfile_element *el, size_t row, enum plyfile_type type,
 	double *value, struct err *e)
@@ -61,7 +66,7 @@ static int next_value(struct plyfile *f, const struct plyfile_element *el, size_
 	if (f->encoding != PLY_ASCII) {
 		if (plyfile_type_size(type) > f->map.len - f->at)
 			return err_short(f, el, row, e);
-		*value = decode(data + f->at, type, f->encoding == PLY_BIG);
+		*value = plyfile_value(f, f->at, type);
 		f->at += plyfile_type_size(type);
 		return 0;
 	}

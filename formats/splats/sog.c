@@ -237,7 +237,7 @@ static int read_all(
 		meta = json_parse(text, len, f->name, e);
 	bad = bad || !meta || read_parts(f, meta, e);
 	if (!bad) {
-		const struct gaussian_rows rows = {f->name, f->n, 3 * f->per_channel, next_row, f};
+		const struct gaussian_rows rows = {f->name, f->n, 3 * f->per_channel, next_row, f, NULL};
 		bad = gaussian_rows_read(s, offset, report, &rows, e);
 	}
 	for (int i = 0; i < IMAGES; i++)

@@ -44,7 +44,7 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 int splat_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e)
 {
-	const struct gaussian_rows rows = {name, map->len / SPLAT_BYTES, 0, next_row, map};
+	const struct gaussian_rows rows = {name, map->len / SPLAT_BYTES, 0, next_row, map, NULL};
 	int bad = map->len % SPLAT_BYTES != 0;
 
 	*s = (struct splats){0};

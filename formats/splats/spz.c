@@ -98,7 +98,7 @@ int spz_read_map(struct splats *s, double offset[3], struct rows_report *report,
 	if (bad)
 		return -1;
 	const int rest = 3 * ((f.degree + 1) * (f.degree + 1) - 1);
-	const struct gaussian_rows rows = {f.name, f.n, rest, next_row, &f};
+	const struct gaussian_rows rows = {f.name, f.n, rest, next_row, &f, NULL};
 	return gaussian_rows_read(s, offset, report, &rows, e);
 }
 

@@ -1,7 +1,7 @@
 #include "splat/gaussian_rows.h"
 
-#include "base/compare.h"
 #include "base/mem.h"
+#include "base/quantile.h"
 
 #include <float.h>
 #include <math.h>
@@ -73,6 +73,32 @@ static enum verdict put_gaussian(struct splats *s, size_t i, double *mean, int r
 	return KEEP;
 }
 
+/* The same where all but the mean and the rotation is that of Gaussian k of `like`. */
+static enum verdict put_moved(
+	struct splats *s, size_t i, double *mean, const struct splats *like, size_t k, const double *row)
+{
+	const size_t width = 3 * (size_t)s->sh_coefficients;
+
+	for (int d = 0; d < 3; d++) {
+		if (!(fabs(row[ROW_MEAN + d]) <= FLT_MAX / 4))
+			return NOT_FINITE;
+		mean[d] = row[ROW_MEAN + d];
+	}
+	for (int d = 0; d < 4; d++)
+		if (!(fabs(row[ROW_ROT + d]) <= FLT_MAX))
+			return NOT_FINITE;
+	memcpy(s->scales + 3 * i, like->scales + 3 * k, 3 * sizeof *s->scales);
+	memcpy(s->sh + width * i, like->sh + width * k, width * sizeof *s->sh);
+	s->opacities[i] = like->opacities[k];
+	return put_quat(s->quats + 4 * i, row + ROW_ROT);
+}
+
+/* The one that comes k-th in rising order, from 0. */
+static double item(struct quantile_item *items, size_t n, size_t k)
+{
+	return quantile_passed(items, n, (double)k + 0.5);
+}
+
 /* The rule of ply.md: far from the origin, compared with the scene's own size, means an offset. */
 int gaussian_offset(double offset[3], const double *means, size_t n, struct err *e)
 {
@@ -82,16 +108,16 @@ int gaussian_offset(double offset[3], const double *means, size_t n, struct err 
 	memset(offset, 0, 3 * sizeof *offset);
 	if (!n)
 		return 0;
-	SCOPED double *sorted = mem_alloc((n + step - 1) / step, sizeof *sorted, "means", e);
-	if (!sorted)
+	SCOPED struct quantile_item *items = mem_alloc((n + step - 1) / step, sizeof *items, "means", e);
+	if (!items)
 		return -1;
 	for (int k = 0; k < 3; k++) {
 		count = 0;
 		for (size_t i = 0; i < n; i += step)
-			sorted[count++] = means[3 * i + (size_t)k];
-		qsort(sorted, count, sizeof *sorted, compare_double);
-		median[k] = sorted[count / 2];
-		spread = fmax(spread, sorted[count - 1 - count / 4] - sorted[count / 4]);
+			items[count++] = (struct quantile_item){means[3 * i + (size_t)k], 1};
+		median[k] = item(items, count, count / 2);
+		spread = fmax(
+			spread, item(items, count, count - 1 - count / 4) - item(items, count, count / 4));
 		far = fmax(far, fabs(median[k]));
 	}
 	const double unit = spread > 0 && spread < 1 ? exp2(floor(log2(spread))) : 1;
@@ -131,10 +157,11 @@ static int read_all(struct splats *s, double *means, struct rows_report *report,
 	int bad = 0;
 
 	for (size_t i = 0; !bad && i < from->n; i++) {
-		bad = from->next(from->reader, i, row, e);
-		if (bad)
+		const int got = from->next(from->reader, i, row, e);
+		if ((bad = got < 0 ? -1 : 0))
 			break;
-		enum verdict v = put_gaussian(s, kept, means + 3 * kept, from->rest, row);
+		enum verdict v = got ? put_moved(s, kept, means + 3 * kept, from->like, i, row)
+				     : put_gaussian(s, kept, means + 3 * kept, from->rest, row);
 		if (v == KEEP)
 			kept++;
 		else

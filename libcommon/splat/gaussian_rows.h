@@ -25,13 +25,16 @@ struct rows_report {
 	size_t *dropped;	      /* (not_finite + zero_quat) indices, rising; owned by the caller */
 };
 
-/* Where rows come from. next fills values (ROW_REST + rest) of row `row`; called for 0 to n - 1 in order. */
+/* Where rows come from. next fills values (ROW_REST + rest) of row `row`; called for 0 to n - 1 in order.
+ * Where it returns 1 it has filled the mean and the rotation alone: the rest is that of Gaussian `row` of
+ * `like`. */
 struct gaussian_rows {
 	const char *path; /* as messages name the file */
 	size_t n;	  /* the file has so many: check that before this is used */
 	int rest;	  /* 3 (K-1): 0, 9, 24 or 45 */
 	int (*next)(void *reader, size_t row, double *values, struct err *e);
 	void *reader;
+	const struct splats *like; /* of n Gaussians; NULL: next returns 0 or -1 */
 };
 
 /* No Gaussians, and nothing to report (may be NULL). */

@@ -109,7 +109,7 @@ Try 'refer-render --help'." render still --time 0
 	done >at.jsonl 3>ap.jsonl
 	echo '{"ref":"cup","object":"cup","text":"the cup that falls","kind":"falls","split":"test","when":[1,2]}' >as.jsonl
 	echo '{"ref":"plate","object":"plate","text":"the plate","kind":"plain","split":"test"}' >>as.jsonl
-	run --separate-stderr "$BIN/miou-score" --answers --sentences as.jsonl --truth at.jsonl ap.jsonl
+	run "$BIN/miou-score" --answers --sentences as.jsonl --truth at.jsonl ap.jsonl
 	[ "$status" -eq 0 ]
 	diff - <(echo "$output" | sed -n 7,9p) <<-END
 	pairs     right      mIoU      oIoU   refused   F1@0.25    F1@0.5       Acc      vIoU      tIoU  kind

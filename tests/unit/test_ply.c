@@ -254,6 +254,51 @@ static void round_trip(int k, const double offset[3])
 	splats_free(&b);
 }
 
+/* A file that is likely like another gives what it gives alone: rows that moved or turned, that changed else,
+ * that cannot be used, and none of them. */
+static void like_another(int k, const double offset[3])
+{
+	const size_t n = 200, width = 3 * (size_t)k;
+	struct splats a, first = {0}, plain = {0}, quick = {0};
+	struct ply_like like = {0};
+	struct rows_report one, two;
+	struct err e = {0};
+	double at[3], from[3];
+
+	make_splats(&a, n, k);
+	int bad = ply_write(&a, offset, path, &e) || anysplats_read(&first, at, NULL, path, &e) ||
+		  file_map(path, &like.map, &e);
+	like.splats = &first;
+	CHECK(!unlink(path), "the map stays");
+	for (size_t i = 0; i < n; i += 3) {
+		a.means[3 * i] += (float)i;
+		a.quats[4 * i] = i % 9 ? a.quats[4 * i] : -a.quats[4 * i];
+		a.opacities[i] *= i % 4 ? 1 : 0.5f;
+		a.sh[width * i + width - 1] += i % 5 ? 0 : 1;
+	}
+	a.means[3 * 30] = NAN;
+	memset(a.quats + 4 * 31, 0, 4 * sizeof *a.quats);
+	a.quats[4 * 33] = INFINITY;
+	bad = bad || ply_write(&a, offset, path, &e) || anysplats_read(&plain, at, &one, path, &e) ||
+	      anysplats_read_like(&quick, from, &two, path, &like, &e);
+	if (!CHECK(!bad, "%s", e.message))
+		return;
+	CHECK(one.not_finite == 2 && one.zero_quat == 1 && two.not_finite == 2 && two.zero_quat == 1,
+		"%zu and %zu", two.not_finite, two.zero_quat);
+	CHECK(plain.n == n - 3 && quick.n == n - 3 && !memcmp(at, from, sizeof at), "%zu", quick.n);
+	CHECK(!memcmp(plain.means, quick.means, plain.n * 12) &&
+			!memcmp(plain.quats, quick.quats, plain.n * 16) &&
+			!memcmp(plain.scales, quick.scales, plain.n * 12) &&
+			!memcmp(plain.opacities, quick.opacities, plain.n * 4) &&
+			!memcmp(plain.sh, quick.sh, plain.n * 12 * (size_t)k),
+		"not the same");
+	free(one.dropped);
+	free(two.dropped);
+	file_unmap(&like.map);
+	for (int i = 0; i < 4; i++)
+		splats_free((struct splats *[]){&a, &first, &plain, &quick}[i]);
+}
+
 /* A file of the plain layout, of doubles: what a row holds is x y z, dc, opacity, scale, rot. */
 static void build_plain(struct bytes *b, int n, double rows[][14])
 {
@@ -402,6 +447,8 @@ int main(void)
 	for (int degree = 0; degree < 4; degree++) {
 		round_trip((degree + 1) * (degree + 1), (double[]){0, 0, 0});
 		round_trip((degree + 1) * (degree + 1), (double[]){-12345.5, 1e6, 3});
+		like_another((degree + 1) * (degree + 1), (double[]){0, 0, 0});
+		like_another((degree + 1) * (degree + 1), (double[]){-12345.5, 1e6, 3});
 	}
 	unlink(path);
 	return unit_end();
