@@ -8,6 +8,9 @@ enum cpu_level {
 	CPU_LEVELS
 };
 
-/* The most that this machine has or, with REFERSPLAT_CPU=plain or =avx2 in the environment of the process, no
- * more than that: to compare the kernels. */
+/* The most that this machine has or, with REFERSPLAT_CPU=plain, =avx2 or =avx512 in the environment of the
+ * process, no more than that: to compare the kernels. */
 enum cpu_level cpu_level(void);
+
+/* Whether it may use AMX's products of bfloat16 besides. */
+int cpu_has_amx(void);

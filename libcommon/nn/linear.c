@@ -1,6 +1,7 @@
 #include "nn/linear.h"
 
 #include "base/half.h"
+#include "nn/linear_amx.h"
 #include "nn/linear_tile.h"
 
 #include <omp.h>
@@ -257,7 +258,10 @@ void linear_layer_with(const struct linear_tile *tile, const struct linear_layer
 
 void linear_layer_run(const struct linear_layer *l)
 {
-	linear_layer_with(linear_tile_best(l->out_width, l->rows), l);
+	if (linear_amx_fits(l))
+		linear_amx_run(l, (size_t)omp_get_max_threads());
+	else
+		linear_layer_with(linear_tile_best(l->out_width, l->rows), l);
 }
 
 void linear_forward(float *out, const float *in, const float *weight, const float *bias, size_t rows,

@@ -25,7 +25,8 @@ struct linear_weight {
 /* Copies n of them, from the `first` on. */
 void linear_weight_take(float *to, const struct linear_weight *w, size_t first, size_t n);
 
-/* The same layer with its weights where they lie; the same bytes as of the weights as floats. */
+/* The same layer with its weights where they lie; the same bytes as of the weights as floats, but for half
+ * floats on processors with AMX (nn/linear_amx.h), which are about as near to the exact sums. */
 struct linear_layer {
 	float *out;	 /* (rows,out_width) */
 	const float *in; /* (rows,in_width) */

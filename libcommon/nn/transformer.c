@@ -4,6 +4,13 @@
 
 #include <math.h>
 
+/* The clones give the machine's vector width; correctly rounded operations give the same bytes. */
+#if defined(__x86_64__) && defined(__GLIBC__)
+#define CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
+#else
+#define CLONES
+#endif
+
 static void take_linear(struct slab *s, struct transformer_linear *linear, int in, int out)
 {
 	slab_take_weight(s, &linear->weight, (size_t)out, (size_t)in);
@@ -31,18 +38,36 @@ void transformer_take(struct transformer *t, struct slab *s)
 	}
 }
 
-/* Mean and variance in double, so that a long row with a large mean keeps its digits. */
+/* The sum of x - less, or of its squares, in double, so that a long row with a large mean keeps its digits:
+ * eight sums, which vectors of any width add alike. */
+CLONES static double sum_of(const float *x, size_t n, double less, int is_squared)
+{
+	enum { LANES = 8 };
+	typedef float floats __attribute__((vector_size(4 * LANES)));
+	typedef double doubles __attribute__((vector_size(8 * LANES)));
+	doubles sums = {0}, d;
+	floats some;
+	double sum = 0;
+	size_t i = 0;
+
+	for (; i + LANES <= n; i += LANES) {
+		memcpy(&some, x + i, sizeof some);
+		d = __builtin_convertvector(some, doubles) - less;
+		sums += is_squared ? d * d : d;
+	}
+	for (; i < n; i++)
+		sum += is_squared ? (x[i] - less) * (x[i] - less) : x[i] - less;
+	for (int k = 0; k < LANES; k++)
+		sum += sums[k];
+	return sum;
+}
+
 void transformer_normalise(const struct transformer *t, float *x, const struct transformer_norm *norm)
 {
-	size_t n = (size_t)t->width;
-	double sum = 0, square = 0;
+	const size_t n = (size_t)t->width;
+	const double mean = sum_of(x, n, 0, 0) / (double)n;
+	const double scale = 1 / sqrt(sum_of(x, n, mean, 1) / (double)n + t->eps);
 
-	for (size_t i = 0; i < n; i++)
-		sum += x[i];
-	double mean = sum / (double)n;
-	for (size_t i = 0; i < n; i++)
-		square += (x[i] - mean) * (x[i] - mean);
-	double scale = 1 / sqrt(square / (double)n + t->eps);
 	for (size_t i = 0; i < n; i++)
 		x[i] = (float)((x[i] - mean) * scale) * norm->scale[i] + norm->shift[i];
 }
@@ -83,11 +108,7 @@ static void add(float *x, const float *y, size_t n)
 
 /* erf(z) = z p(z z / 8 - 1) within 1e-8 for |z| < 4, by interpolation at Chebyshev's points; 1 in a float
  * beyond. In double, as a float's digits are lost where 1 + erf is small. */
-#if defined(__x86_64__) && defined(__GLIBC__)
-__attribute__((target_clones("avx512f", "avx2", "default")))
-#endif
-static void
-gelu(float *x, size_t n)
+CLONES static void gelu(float *x, size_t n)
 {
 	static const double p[] = {0.000572087096343, -0.00137052044348, 0.000713755510814, -0.00108552910178,
 		0.00541989023641, -0.0100730577306, 0.0140410128124, -0.0216723195703, 0.0331549293389,

@@ -3,6 +3,7 @@
 #include "base/half.h"
 #include "base/rng.h"
 #include "nn/linear.h"
+#include "nn/linear_amx.h"
 #include "nn/linear_tile.h"
 
 #include <omp.h>
@@ -92,6 +93,58 @@ static void product_all_tiles(void)
 		free(z);
 		free(halves);
 	}
+}
+
+/* Layers of half floats where the processor has AMX: the same bytes for any number of threads and whatever
+ * other rows there are, at most three times as far from float64 as sums of floats. */
+static void layers_of_halves(void)
+{
+	static const size_t widths[][2] = {{32, 32}, {96, 160}, {384, 384}, {384, 1536}, {1536, 384}};
+	enum { ROWS = 300, WIDEST = 1536 };
+	float *x = malloc(ROWS * WIDEST * 4), *w = malloc(384 * WIDEST * 4), *bias = malloc(WIDEST * 4);
+	float *y = malloc(ROWS * WIDEST * 4), *z = malloc(ROWS * WIDEST * 4);
+	double *w64 = malloc(384 * WIDEST * 8), *y64 = malloc(ROWS * WIDEST * 8);
+	char *halves = malloc(1 + 2 * 384 * WIDEST); /* at an odd address */
+	struct rng r;
+
+	for (size_t s = 0; s < sizeof widths / sizeof *widths; s++) {
+		const size_t in = widths[s][0], out = widths[s][1];
+		struct linear_layer l = {y, x, {NULL, halves + 1}, bias, ROWS, in, out};
+		double worst[2] = {0};
+		rng_seed(&r, s, 1);
+		fill(x, ROWS * in, &r);
+		fill(w, in * out, &r);
+		fill(bias, out, &r);
+		for (size_t i = 0; i < in * out; i++) {
+			const uint16_t half = half_of_float(w[i]);
+			memcpy(halves + 1 + 2 * i, &half, sizeof half);
+			w64[i] = half_to_float(half);
+		}
+		if (!linear_amx_fits(&l))
+			continue;
+		forward64(y64, x, w64, bias, ROWS, in, out);
+		for (int is_amx = 0; is_amx < 2; is_amx++) {
+			if (is_amx)
+				linear_amx_run(&l, 1);
+			else
+				linear_layer_with(linear_tile_get(0), &l);
+			for (size_t i = 0; i < ROWS * out; i++)
+				worst[is_amx] = fmax(worst[is_amx], fabs(y[i] - y64[i]));
+		}
+		CHECK(worst[1] < 3 * worst[0], "%zu to %zu: %g from float64, by vectors %g", in, out,
+			worst[1], worst[0]);
+		for (size_t rows = 1; rows <= 130; rows += rows < 34 ? 1 : 32) {
+			l.out = z;
+			l.in = x + (ROWS - rows) * in;
+			l.rows = rows;
+			z[rows * out] = 42;
+			linear_amx_run(&l, rows % 9);
+			CHECK(same_bytes(z, y + (ROWS - rows) * out, rows * out * 4),
+				"%zu to %zu: other bytes of %zu rows", in, out, rows);
+			CHECK(z[rows * out] == 42, "%zu to %zu: wrote past %zu rows", in, out, rows);
+		}
+	}
+	free(x), free(w), free(bias), free(y), free(z), free(w64), free(y64), free(halves);
 }
 
 /* Results do not depend on how many threads there are. */
@@ -229,6 +282,7 @@ static void backward_against_float64(void)
 int main(void)
 {
 	product_all_tiles();
+	layers_of_halves();
 	same_for_any_threads();
 	backward_is_the_gradient();
 	backward_against_float64();
