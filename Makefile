@@ -106,6 +106,7 @@ $(TABLED): $(TABLES)
 # So is what is known of everyday things.
 $(BUILD)/obj/libcommon/lang/things.o: libcommon/lang/things.tsv
 $(BUILD)/obj/libcommon/lang/kinds.o: libcommon/lang/kinds.tsv
+$(BUILD)/obj/libcommon/lang/motion_rows.o: libcommon/lang/motion_words.tsv
 $(BUILD)/obj/libcommon/lang/things_vectors.o: libcommon/lang/things.vectors
 
 # So are the words of synthetic sentences.

@@ -69,6 +69,13 @@ static void put_box(const struct answer_told *t, size_t object, FILE *out)
 		b->centre[2] + a->scene.offset[2], 2 * b->half[0], 2 * b->half[1], 2 * b->half[2]);
 }
 
+/* "; from 0.3 to 0.6" */
+static void put_when(const struct answer_told *t, FILE *out)
+{
+	if (t->answer->is_motion && t->answer->count)
+		fprintf(out, "; from %.4g to %.4g", t->answer->when[0], t->answer->when[1]);
+}
+
 static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 {
 	const struct asking *a = t->asking;
@@ -83,6 +90,7 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 			answering_side(t->answer->centres[object], t->answer->centres[nearest]),
 			names[nearest]);
 	put_belief(t, object, 1, out);
+	put_when(t, out);
 	if (a->model.extents[object].n && t->is_verbose)
 		put_box(t, object, out);
 	if (t->is_picked)
@@ -149,6 +157,7 @@ static void put_value(const struct answer_told *t, const char *value, FILE *out)
 		fprintf(out, "%s%s ", k ? ", " : ": ", names[t->answer->things[k]]);
 		put_belief(t, t->answer->things[k], 0, out);
 	}
+	put_when(t, out);
 	if (answer_is_no(t) && *t->answer->reason)
 		fprintf(out, "%s %s", t->answer->count ? ";" : ":", t->answer->reason);
 	put_view(t, out);
@@ -311,6 +320,12 @@ int answer_put_json(const struct answer_told *t, FILE *out, struct err *e)
 		jsontext_flag(to, "guess", 1);
 	jsontext_rounded(to, "probability", a->there);
 	put_things(to, t);
+	if (a->is_motion && a->count) {
+		jsontext_open(to, "when", '[');
+		jsontext_number(to, NULL, a->when[0]);
+		jsontext_number(to, NULL, a->when[1]);
+		jsontext_close(to, ']');
+	}
 	if (a->runner_up != ASKING_NONE) {
 		jsontext_open(to, "runner_up", '{');
 		put_name(to, t, a->runner_up);

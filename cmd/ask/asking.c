@@ -104,7 +104,8 @@ static int make_chooser(struct asking *a, struct err *e)
 	if (choose_without(a->options->without, &parts, &name))
 		return err_set(e, ERR_USAGE, "--without: no part '%.*s'", (int)name.length, name.text);
 	a->parser = (struct parser){.weights = &a->model.weights, .encoder = a->encoder.fingerprint.hex};
-	a->of = (struct choose_scene){&a->model.lifted, &a->scene.splats, &a->scene.cameras, &a->parser, 1};
+	a->of = (struct choose_scene){&a->model.lifted, &a->scene.splats, &a->scene.cameras, &a->parser, 1,
+		a->model.tracks.times ? &a->model.tracks : NULL};
 	a->chooser = chooser_make(&a->of, parts, e);
 	return a->chooser ? 0 : -1;
 }
@@ -114,7 +115,7 @@ int asking_open(struct asking *a, const struct asking_options *options, struct e
 	a->options = options;
 	return read_all(a, e) || (options->camera && asking_read_camera(a, options->camera, e)) ||
 			       find_viewpoint(a, e) || anymodel_place(&a->model, &a->scene, e) ||
-			       make_chooser(a, e)
+			       anymodel_track(&a->model, &a->scene, e) || make_chooser(a, e)
 		       ? -1
 		       : 0;
 }
@@ -289,6 +290,8 @@ static int choose_answer(
 		return -1;
 	w->answer->there = choice.there;
 	w->answer->is_by_purpose = choice.is_by_purpose;
+	w->answer->is_motion = choice.is_motion;
+	memcpy(w->answer->when, choice.when, sizeof choice.when);
 	for (size_t o = 0; o < objects; o++)
 		w->answer->probability[o] = choice.there * (double)probability[o];
 	w->answer->is_guess = choice.there < a->options->least;

@@ -71,6 +71,8 @@ struct asking_answer {
 	size_t runner_up;      /* the likeliest other object; ASKING_NONE */
 	size_t unclear[2];     /* two things of which the question's one anchor may be either; ASKING_NONE */
 	int is_anchor_unknown; /* nothing here is known as what a place is told by */
+	int is_motion;	       /* it says something of motion: */
+	double when[2];	       /* from when to when things move so */
 	double there;	       /* P that the question means anything that is here */
 	int is_by_purpose;     /* what the thing is for told */
 	int is_guess;	       /* it would be refused but for is_always */

@@ -3,6 +3,7 @@
 
 #include "base/jsontext.h"
 #include "base/largest.h"
+#include "lang/motion_said.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -28,6 +29,9 @@ static void add_part(struct parse_words *w, const struct explained *x, const str
 	case MEANING_CLAUSE:
 	case MEANING_SIZE:
 		parse_words_clause(w, p, text, &p->clauses[part->index]);
+		break;
+	case MEANING_MOTION:
+		parse_words_add(w, motion_kind_name((enum motion_kind)part->index));
 		break;
 	case MEANING_EXCEPT:
 		parse_words_phrase(w, p, text, part->index);
@@ -149,7 +153,8 @@ static const char *part_words(
 		[MEANING_SIZE] = "size",
 		[MEANING_EXCEPT] = "except",
 		[MEANING_AMONG] = "among",
-		[MEANING_ORDINAL] = "ordinal"};
+		[MEANING_ORDINAL] = "ordinal",
+		[MEANING_MOTION] = "motion"};
 	struct parse_words w = {words, 0, EXPLAIN_REASON};
 
 	*words = 0;

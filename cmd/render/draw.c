@@ -113,15 +113,34 @@ static size_t list_parts(const struct request *r, const struct mask *shown, size
 	return n > 1 ? n : 0;
 }
 
+/* Of a sentence of motion its time; whether a view is of that. */
+static int is_then(const struct drawing *d, size_t i, size_t view, struct mask_place *place)
+{
+	const struct request *r = d->request;
+	const double *when = r->responses.when ? r->responses.when[i] : NULL,
+		     at = r->options->time ? *r->options->time : d->views[d->first + view].time;
+
+	if (!when || isnan(when[0]))
+		return 1;
+	place->has_when = 1;
+	memcpy(place->when, when, sizeof place->when);
+	return at >= when[0] && at <= when[1];
+}
+
 static int put_sentence(const struct drawing *d, size_t i, size_t view, const struct mask *shown,
 	struct mask *parts, struct err *e)
 {
 	const struct request *r = d->request;
 	const size_t answer = r->responses.answer[i];
 	struct mask m = shown[answer];
+	struct mask_place place = m.place ? *m.place : (struct mask_place){0};
+	uint32_t all = (uint32_t)m.rle.height * (uint32_t)m.rle.width;
 
 	m.view = d->views[d->first + view].name;
 	m.ref = r->text.refs[r->refs[i]];
+	if (!is_then(d, i, view, &place) && d->options->is_when)
+		m.rle = (struct rle){.height = m.rle.height, .width = m.rle.width, .n = 1, .runs = &all};
+	m.place = m.place || place.has_when ? &place : NULL;
 	m.object = text_object(&r->text, r->refs[i]);
 	if (r->responses.sure)
 		m.score = rle_area(&m.rle) ? r->responses.sure[i] : 0;

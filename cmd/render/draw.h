@@ -17,6 +17,7 @@ struct draw_options {
 	int is_amodal;	/* outlines of whole objects */
 	long long peak; /* the window of answer/peak.h where records have peaks; 0: they have none */
 	int is_each;	/* all sentences are said in the view that is drawn */
+	int is_when;	/* nothing is shown in views of a time that a sentence of motion does not mean */
 	struct pictures pictures;
 };
 

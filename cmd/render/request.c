@@ -130,6 +130,8 @@ int request_answer(struct request *r, const struct viewpoint *from, struct err *
 		!o->is_plain, r->parts, o->least, o->wants_parts, from};
 
 	responses_free(&r->responses);
+	if (anymodel_track(&r->model, &r->scene, e))
+		return -1;
 	return anymodel_answer(&r->model, &ask, &r->responses, e);
 }
 

@@ -38,7 +38,7 @@ static int choose_all(struct choosing *c, struct err *e)
 	const struct lifted *l = &c->run->lifted.lifted;
 	const struct text *t = c->text;
 	const struct parser parser = {.weights = &c->run->lifted.weights, .encoder = t->encoder.hex};
-	const struct choose_scene of = {l, &c->run->scene.splats, &c->run->scene.cameras, &parser, 1};
+	const struct choose_scene of = {l, &c->run->scene.splats, &c->run->scene.cameras, &parser, 1, NULL};
 	const struct choose_watch watching = {c, watch};
 	SCOPED struct choose_sentence *sentences = mem_alloc(t->n, sizeof *sentences, "sentences", e);
 

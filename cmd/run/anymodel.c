@@ -34,6 +34,7 @@ int anymodel_read(struct anymodel *m, const char *path, struct err *e)
 
 void anymodel_free(struct anymodel *m)
 {
+	tracks_free(&m->tracks);
 	lifted_extents_free(m->extents, m->lifted.objects);
 	model_free(&m->trained);
 	lifted_free(&m->lifted);
@@ -66,6 +67,39 @@ int anymodel_place(struct anymodel *m, const struct scene *scene, struct err *e)
 		return -1;
 	m->lifted.extents = m->extents;
 	return 0;
+}
+
+static int track_frames(struct anymodel *m, const struct scene *scene, struct splats *at, struct err *e)
+{
+	const struct motion *motion = &scene->motion;
+	SCOPED char *is_moved = mem_zalloc(at->n, 1, "tracks", e);
+	struct extent *extents = NULL;
+	double up[3];
+
+	cameras_up(&scene->cameras, up);
+	int bad = !is_moved || lifted_extents(&extents, &m->lifted, at, up, e);
+	for (size_t i = 0; i < motion->moved && !bad; i++)
+		is_moved[motion->ids[i]] = 1;
+	bad = bad || tracks_begin(&m->tracks, m->lifted.objects, extents, at, motion->at, motion->times,
+			     is_moved, up, e);
+	for (size_t i = 0; i < motion->times && !bad; i++)
+		bad = motion_set(motion, motion->at[i], at, e) || tracks_put(&m->tracks, i, at, e);
+	lifted_extents_free(extents, m->lifted.objects);
+	return bad || tracks_end(&m->tracks, e) ? -1 : 0;
+}
+
+int anymodel_track(struct anymodel *m, const struct scene *scene, struct err *e)
+{
+	const struct camera first = {.has_time = 1, .time = scene->motion.times ? scene->motion.at[0] : 0};
+	struct splats at;
+
+	if (!scene->motion.times || !m->is_lifted || m->tracks.times)
+		return 0;
+	if (scene_splats_at(&at, scene, &first, e))
+		return -1;
+	const int bad = track_frames(m, scene, &at, e);
+	scene_splats_release(&at, scene);
+	return bad;
 }
 
 static void move(struct box *b, const double by[3])
@@ -168,8 +202,9 @@ int anymodel_answer(
 	const float *means = q->scene->splats.means;
 	const struct parser parser = {.weights = &m->weights, .encoder = q->text->encoder.hex};
 	struct responses_question of = {&q->scene->splats, &q->scene->cameras, q->text->offsets,
-		q->text->words, q->text->middle, q->text->texts, q->text->pieces, NULL, &parser, q->which,
-		q->count, q->text->refs, file_name(q->model_path), q->wants_parts};
+		q->text->words, q->text->middle, q->text->texts, q->text->pieces, NULL, &parser,
+		m->tracks.times ? &m->tracks : NULL, q->which, q->count, q->text->refs,
+		file_name(q->model_path), q->wants_parts};
 	SCOPED_BY(rows_free) struct rows rows = {0};
 	SCOPED_BY(query_free) struct query query = {0};
 

@@ -12,6 +12,7 @@
 #include "formats/records/boxes.h"
 #include "lift/extent.h"
 #include "lift/lifted_model.h"
+#include "places/track.h"
 
 struct anymodel {
 	int is_lifted, is_selection; /* neither: trained */
@@ -20,6 +21,7 @@ struct anymodel {
 	struct selection selection;
 	struct origin origin;	       /* the scene and the encoder that it was made with */
 	struct parser_weights weights; /* of the sentences' parser, for a lifted model: the default ones */
+	struct tracks tracks;	       /* of anymodel_track; no times: the scene is still */
 	struct extent *extents;	       /* (objects) of a lifted model, of anymodel_place; else NULL */
 };
 
@@ -33,6 +35,8 @@ int anymodel_check_scene(const struct anymodel *m, const char *model, const stru
 
 /* Where each lifted object is, in the frame of the splats: m->extents. Returns 0, or -1 with *e set. */
 int anymodel_place(struct anymodel *m, const struct scene *scene, struct err *e);
+/* Which way each goes, of a scene that moves, whatever time it is moved to: m->tracks. Likewise. */
+int anymodel_track(struct anymodel *m, const struct scene *scene, struct err *e);
 /* The boxes of an object in the world, means + offset, with the score `sure`; without names. */
 struct box_record anymodel_box(const struct extent *x, const double offset[3], double sure);
 

@@ -50,9 +50,9 @@ static int read_boxes(const struct jsonl *j, const cJSON *boxes, struct mask_pla
 static int read_place(const struct jsonl *j, const cJSON *object, struct mask *m, struct err *e)
 {
 	const cJSON *peak = json_member(object, "peak"), *boxes = json_member(object, "boxes"),
-		    *time = json_member(object, "time");
+		    *time = json_member(object, "time"), *when = json_member(object, "when");
 
-	if (!peak && !boxes && !time)
+	if (!peak && !boxes && !time && !when)
 		return 0;
 	if (!(m->place = mask_place_new(e)))
 		return -1;
@@ -63,6 +63,9 @@ static int read_place(const struct jsonl *j, const cJSON *object, struct mask *m
 	}
 	if (time && (m->place->has_time = json_number(object, "time", 1, &m->place->time, j->where, e)) < 0)
 		return -1;
+	if (when && json_numbers(when, 2, m->place->when))
+		return jsonl_err(j, e, "key 'when' is not [from,to]");
+	m->place->has_when = when != NULL;
 	return boxes ? read_boxes(j, boxes, m->place, e) : 0;
 }
 
@@ -342,6 +345,8 @@ static void put_place(FILE *out, const struct mask_place *p)
 		fputc(']', out);
 	if (p->has_time)
 		put_number(out, ",\"time\":", p->time);
+	if (p->has_when)
+		jsonl_put_numbers(out, ",\"when\":[", p->when, 2);
 }
 
 /* What is known of a mask but whose it is. */

@@ -9,7 +9,7 @@
 
 void responses_free(struct responses *a)
 {
-	mem_free_all(a->responses, a->lifts, a->answer, a->sure, a->begin, a->objects, a->alone);
+	mem_free_all(a->responses, a->lifts, a->answer, a->sure, a->when, a->begin, a->objects, a->alone);
 	*a = (struct responses){0};
 }
 
@@ -156,7 +156,7 @@ static int meant_alloc(struct meant *m, size_t count, size_t objects, struct err
 static int find_meant(struct meant *m, struct responses *a, const struct lifted *l,
 	const struct responses_question *q, unsigned parts, double least, struct err *e)
 {
-	const struct choose_scene scene = {l, q->splats, q->cameras, q->parser, 1};
+	const struct choose_scene scene = {l, q->splats, q->cameras, q->parser, 1, q->tracks};
 
 	for (size_t i = 0; i < q->count; i++) {
 		const size_t r = q->which[i], at = (size_t)q->offsets[r] * (size_t)l->width;
@@ -168,6 +168,10 @@ static int find_meant(struct meant *m, struct responses *a, const struct lifted 
 		return -1;
 	for (size_t i = 0; i < q->count; i++) {
 		char *chosen = m->chosen + i * l->objects;
+		for (int k = 0; k < 2; k++)
+			a->when[i][k] = m->choices[i].is_motion && m->choices[i].there >= least
+						? m->choices[i].when[k]
+						: NAN;
 		double sum = 0, n = 0;
 		if (m->choices[i].there < least)
 			memset(chosen, 0, l->objects);
@@ -261,8 +265,9 @@ static int ask_lifted(struct responses *a, const struct lifted *l, const struct 
 
 	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
 	a->sure = mem_alloc(q->count, sizeof *a->sure, "sentences", e);
-	int bad = !sets.chosen || !a->answer || !a->sure || meant_alloc(&m, q->count, l->objects, e) ||
-		  find_meant(&m, a, l, q, parts, least, e);
+	a->when = mem_alloc(q->count, sizeof *a->when, "sentences", e);
+	int bad = !sets.chosen || !a->answer || !a->sure || !a->when ||
+		  meant_alloc(&m, q->count, l->objects, e) || find_meant(&m, a, l, q, parts, least, e);
 	for (size_t i = 0; i < q->count && !bad; i++)
 		a->answer[i] = find_set(&sets, m.chosen + i * l->objects);
 	bad = bad || list_objects(a, &sets, q->wants_parts, e) || take_answers(a, l, &sets, e);

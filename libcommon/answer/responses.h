@@ -21,7 +21,8 @@ struct responses_question {
 	const struct viewpoint
 		*from; /* (count) where each of `which` is said; NULL: from the usual viewpoint */
 	const struct parser *parser;
-	const size_t *which; /* (count) the sentences */
+	const struct tracks *tracks; /* as of struct choose_scene */
+	const size_t *which;	     /* (count) the sentences */
 	size_t count;
 	char *const *refs; /* of each sentence, and the model's file: for messages */
 	const char *model_path;
@@ -34,7 +35,9 @@ struct responses {
 	float *responses; /* (answers,N) as render_pack has them: what is blended */
 	double *lifts;	  /* (answers) what calibration added to them */
 	size_t *answer;	  /* (count) of each sentence */
-	double *sure;	  /* (count) in [0,1], or NULL: a model of logits says so in each view (respond_mask) */
+	double *sure; /* (count) in [0,1], or NULL: a model of logits says so in each view (respond_mask) */
+	double (*when)[2]; /* (count) from when to when, of sentences of motion; NaN: always; NULL: a trained
+			      model */
 	/* Of a lifted model: answer k is the union of objects[begin[k]] to objects[begin[k + 1] - 1]. */
 	size_t *begin; /* (answers + 1), or NULL */
 	size_t *objects;

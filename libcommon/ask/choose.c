@@ -1,5 +1,6 @@
 #include "ask/choose.h"
 
+#include "ask/choose_motion.h"
 #include "ask/constants.h"
 #include "ask/judge.h"
 #include "ask/usage.h"
@@ -36,8 +37,9 @@ struct chooser {
 	struct arrangement arrangement;
 	struct viewpoint from; /* of the arrangement */
 	struct meaning meaning;
-	double *score, *whole; /* (O) */
-	double *purpose;       /* (3 O) scratch */
+	struct motion_meaning motion; /* of a scene that moves */
+	double *score, *whole;	      /* (O) */
+	double *purpose;	      /* (3 O) scratch */
 };
 
 static int has(const struct chooser *c, enum choose_part p)
@@ -204,6 +206,10 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 
 	if (!from->parse && parse_sentence(own, &c->parser, from->text, &vectors, e))
 		return -1;
+	if (c->scene->tracks && !from->parse &&
+		choose_motion(&c->meaning, c->scene, &c->parser, from, own, e))
+		return -1;
+	to->is_motion = c->scene->tracks && (c->motion.said.n || c->motion.gone != MOTION_NONE);
 	const int is_all = from->is_all && own->phrases && own->phrases[0].count == PARSE_ONE;
 	if (is_all) {
 		own->phrases[0].count = PARSE_ALL;
@@ -226,8 +232,10 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 	const struct parse_phrase *target = &p->phrases[0];
 	const int may_be_purpose =
 		to->there < PARSE_LEAST || (!target->noun.n && !usage_says_more(&c->meaning));
-	if (has(c, CHOOSE_PURPOSE) && may_be_purpose && !target->also.n && !target->except.n &&
-		!target->ordinal && target->count <= PARSE_ONE)
+	if (to->is_motion)
+		choose_when(&c->motion, chosen, to->when);
+	if (has(c, CHOOSE_PURPOSE) && may_be_purpose && !to->is_motion && !target->also.n &&
+		!target->except.n && !target->ordinal && target->count <= PARSE_ONE)
 		choose_purpose(c, target->count == PARSE_ALL && !is_all, is_all, to, row, chosen);
 	return 0;
 }
@@ -257,7 +265,7 @@ static int choose_one(struct chooser *c, const struct choose_sentence *from, str
 		to->there = 1;
 		choose_whole(c, row, chosen);
 	}
-	if (!bad && same < n) {
+	if (!bad && same < n && !to->is_motion) {
 		to->there = 1;
 		for (size_t o = 0; o < n; o++)
 			row[o] = chosen[o] = o == same;
@@ -300,7 +308,10 @@ static int chooser_init(struct chooser *c, const struct choose_scene *s, unsigne
 	c->meaning = (struct meaning){.arrangement = &c->arrangement,
 		.vocabulary = &c->vocabulary,
 		.has_surfaces = has(c, CHOOSE_SURFACES),
+		.motion = s->tracks ? &c->motion : NULL,
 		.naming = s->naming};
+	if (s->tracks && motion_meaning_make(&c->motion, s->tracks, e))
+		return -1;
 	if (!has(c, CHOOSE_WORDS))
 		c->meaning.without |= 1U << MEANING_NOUN | 1U << MEANING_ATTRIBUTE;
 	if (!has(c, CHOOSE_COLOURS))
@@ -325,6 +336,7 @@ void chooser_free(struct chooser *c)
 	if (c->vocabulary.lifted)
 		vocabulary_free(&c->vocabulary);
 	meaning_free(&c->meaning);
+	motion_meaning_free(&c->motion);
 	free(c->words);
 	free(c->score);
 	free(c->whole);

@@ -57,12 +57,15 @@ struct choose_scene {
 	const struct parser *parser;
 	double naming; /* how much words for the thing itself count, 1 but where it is in doubt which lifted
 			  object has which name: colours and relations then tell */
+	const struct tracks *tracks; /* of the objects of a scene that moves; NULL: it is still */
 };
 
 struct choice {
 	double there;	   /* P that the sentence means anything that was lifted */
 	int is_several;	   /* it may mean more than one object */
 	int is_by_purpose; /* what the thing is for told (CHOOSE_PURPOSE) */
+	int is_motion;	   /* it says something of motion (lang/motion_said.h), and: */
+	double when[2];	   /* from when to when what is chosen moves so */
 };
 
 /* What is known of a sentence once it is judged, to explain it; good until the call returns. */

@@ -211,7 +211,7 @@ static int settle(struct lifted *l, size_t named, const char *is_fixed, const st
 int disambiguate(struct lifted *l, size_t named, const char *is_fixed, const struct splats *splats,
 	const struct cameras *cameras, const struct parser *parser, struct disambiguated *to, struct err *e)
 {
-	const struct choose_scene scene = {l, splats, cameras, parser, naming};
+	const struct choose_scene scene = {l, splats, cameras, parser, naming, NULL};
 	size_t *from = mem_alloc(l->objects, sizeof *from, "objects", e);
 	struct lifted old = {0};
 

@@ -2,6 +2,7 @@
 
 #include "ask/constants.h"
 #include "ask/judge_clauses.h"
+#include "ask/judge_motion.h"
 #include "ask/judge_words.h"
 
 #include <math.h>
@@ -105,9 +106,10 @@ static void take_whole(struct meaning *m, int phrase)
 static void judge_phrase(struct meaning *m, int phrase, int depth);
 
 /* The phrases that a phrase needs, before it. */
-static void judge_below(struct meaning *m, const struct parse_phrase *f, int depth)
+static void judge_below(struct meaning *m, int phrase, int depth)
 {
 	const struct parse *p = m->sentence->parse;
+	const struct parse_phrase *f = &p->phrases[phrase];
 
 	for (int k = 0; k < f->clauses.n; k++) {
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
@@ -119,6 +121,9 @@ static void judge_below(struct meaning *m, const struct parse_phrase *f, int dep
 	}
 	for (int k = 0; k < f->except.n; k++)
 		judge_phrase(m, f->except.item[k], depth + 1);
+	for (int k = 0; m->motion && k < m->motion->said.n; k++)
+		if (m->motion->said.events[k].phrase == phrase && m->motion->said.events[k].about >= 0)
+			judge_phrase(m, m->motion->said.events[k].about, depth + 1);
 	for (int k = 0; k < f->among.n; k++)
 		judge_phrase(m, f->among.item[k], depth + 1);
 }
@@ -139,12 +144,13 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 	if (f->viewer || depth > DEPTH)
 		return;
 	judge_within(m, phrase);
-	judge_below(m, f, depth);
+	judge_below(m, phrase, depth);
 	for (int k = 0; k + 1 < f->noun.n; k++)
 		judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
 	for (int k = 0; k < f->attributes.n; k++)
 		judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
 	judge_clauses(m, phrase);
+	judge_motion(m, phrase);
 	for (int k = 0; k < f->except.n; k++)
 		judge_except(m, phrase, f->except.item[k]);
 	judge_among(m, phrase);

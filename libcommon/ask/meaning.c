@@ -1,5 +1,6 @@
 #include "ask/meaning.h"
 
+#include "ask/judge_motion.h"
 #include "base/list.h"
 #include "base/mem.h"
 #include "lang/closed.h"
@@ -41,9 +42,9 @@ void meaning_take_part(struct meaning *m)
 		fit[o] *= names && power != 1 ? pow(p->value[o], power) : p->value[o];
 }
 
-static size_t parts_of(const struct parse *p)
+static size_t parts_of(const struct meaning *m, const struct parse *p)
 {
-	size_t n = 0;
+	size_t n = m->motion ? (size_t)m->motion->said.n + 1 : 0;
 
 	for (int i = 0; i < p->phrase_count; i++) {
 		const struct parse_phrase *f = &p->phrases[i];
@@ -54,7 +55,7 @@ static size_t parts_of(const struct parse *p)
 
 static int make_room(struct meaning *m, const struct parse *p, struct err *e)
 {
-	const size_t n = objects_of(m), phrases = (size_t)p->phrase_count, parts = parts_of(p);
+	const size_t n = objects_of(m), phrases = (size_t)p->phrase_count, parts = parts_of(m, p);
 
 	if (!m->scratch)
 		m->scratch = mem_alloc(n + 1, 9 * sizeof *m->scratch, "choice", e);

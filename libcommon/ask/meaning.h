@@ -15,6 +15,7 @@ enum meaning_kind {
 	MEANING_EXCEPT,
 	MEANING_AMONG, /* one of several that are named */
 	MEANING_ORDINAL,
+	MEANING_MOTION, /* what is said of its motion */
 	MEANING_KINDS
 };
 
@@ -22,7 +23,7 @@ enum meaning_kind {
 struct meaning_part {
 	int phrase;
 	enum meaning_kind kind;
-	int index; /* of the word or clause, or the phrase that is left out; -1 */
+	int index; /* of the word or clause, the phrase that is left out, the kind of motion; -1 */
 	double *value;
 };
 
@@ -38,6 +39,7 @@ struct meaning {
 	const struct arrangement *arrangement;
 	const struct meaning_set *set; /* "of those"; NULL: of all that is there */
 	struct vocabulary *vocabulary;
+	struct motion_meaning *motion; /* ask/judge_motion.h; NULL: the scene is still */
 	unsigned without; /* a bit 1 << meaning_kind for each kind of part that counts for nothing */
 	int has_surfaces; /* whether what Gaussians show of a look counts */
 	double naming; /* the power of nouns and attributes that are no colours; 1; 0 for those of the thing

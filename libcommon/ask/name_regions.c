@@ -244,7 +244,7 @@ int name_regions(const struct lifted *l, size_t named, const struct region_facts
 	const struct splats *splats, const struct cameras *cameras, const struct parser *parser,
 	size_t *region, double *probability, struct err *e)
 {
-	const struct choose_scene scene = {l, splats, cameras, parser, 0};
+	const struct choose_scene scene = {l, splats, cameras, parser, 0, NULL};
 	const size_t width = (size_t)l->width;
 	struct search s = {.l = l, .named = named, .facts = facts, .at = region};
 	SCOPED struct choose_sentence *sentences = s.sentences =

@@ -12,6 +12,8 @@ struct mask_place {
 	double (*boxes)[4]; /* left, top, right, bottom, in the same units; owned */
 	int has_time;	    /* the view is of this time, of a scene that moves */
 	double time;
+	int has_when; /* the sentence is of motion, from when to when */
+	double when[2];
 };
 
 /* A zeroed one; NULL with *e set. */

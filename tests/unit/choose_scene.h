@@ -88,7 +88,7 @@ __attribute__((constructor)) static void make_parser(void)
 {
 	parser = default_parser();
 }
-static const struct choose_scene scene = {&lifted, &splats, &cameras, &parser, 1};
+static const struct choose_scene scene = {&lifted, &splats, &cameras, &parser, 1, NULL};
 static float probability[OBJECTS];
 static char chosen[OBJECTS];
 static struct choice choice;

@@ -217,7 +217,7 @@ static void many(void)
 	CHECK(both[OBJECTS + 3] > 0.25F && both[OBJECTS + 3] > both[OBJECTS], "without pieces: %g",
 		(double)both[OBJECTS + 3]);
 	const struct lifted none = {.gaussians = N, .width = WIDTH, .indptr = indptr, .offsets = offsets};
-	const struct choose_scene empty = {&none, &splats, &cameras, &parser, 1};
+	const struct choose_scene empty = {&none, &splats, &cameras, &parser, 1, NULL};
 	CHECK(!choose(&empty, s, 2, CHOOSE_ALL, two, both, of_both, NULL, &e), "a model without objects");
 }
 
@@ -476,7 +476,7 @@ static void words_of_others(void)
 	static float vectors[4 * 8 * WIDTH], asked[MOST * WIDTH];
 	int64_t at[5];
 	const struct lifted l = other_said(said, about, 4, at, vectors);
-	const struct choose_scene s = {&l, &splats, &cameras, &parser, 1};
+	const struct choose_scene s = {&l, &splats, &cameras, &parser, 1, NULL};
 	static const struct {
 		const char *text, *why;
 		int means;

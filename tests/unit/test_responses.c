@@ -50,7 +50,7 @@ __attribute__((constructor)) static void make_parser(void)
 	parser = default_parser();
 }
 static const struct responses_question of = {&splats, &cameras, asked_offsets, asked_words, NULL, pieces,
-	pieces, NULL, &parser, which, SENTENCES, pieces, "model", 0};
+	pieces, NULL, &parser, NULL, which, SENTENCES, pieces, "model", 0};
 
 static float at(const struct responses *a, size_t answer, size_t gaussian)
 {

@@ -87,7 +87,7 @@ static int ask(const char *text, const char *thing, const char *of)
 		NULL, NULL, offsets, no_words, NULL, NULL, NULL};
 	struct parser parser = default_parser();
 	parser.encoder = of;
-	const struct choose_scene scene = {&lifted, &splats, &cameras, &parser, 1};
+	const struct choose_scene scene = {&lifted, &splats, &cameras, &parser, 1, NULL};
 	char chosen[OBJECTS];
 	struct err e;
 	size_t words = 1;
