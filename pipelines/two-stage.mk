@@ -26,7 +26,7 @@
 # TEACH       who teaches stage 2: stage1, whose masks of the training views it learns from, as in the paper; or lifted, the objects
 #             that are lifted from masks selected in 3D; default lifted, which pipelines/ablation.md shows to be better
 # TAUGHT      sentences of each thing that refer-say writes for a stage 2 that is taught by lifted objects, which learns these objects
-#             by parses, in 2500 steps at most; default 100. 0: it learns their masks of the training views, as from stage1
+#             by parses, in 2500 steps at most; default 200. 0: it learns their masks of the training views, as from stage1
 # SELECT, WEIGH, LIFT, TRAIN   more options for pseudomask-select, gs-weigh, refer-lift, refer-train, with blanks between them
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 # V           1 prints the commands too
@@ -43,7 +43,7 @@ SCALE ?= 0.25
 ITERATIONS ?= 45000
 SEED ?= 1
 TEACH ?= lifted
-TAUGHT ?= 100
+TAUGHT ?= 200
 include $(here)common.mk
 $(foreach v,MASKS SENTENCES CANDIDATES,$(call take,$(v)))
 # How the things may be given, for whoever has given none.
