@@ -26,7 +26,7 @@ values() {
 			done
 			case $table in
 			masks) made='both=masks/ciou iou=masks/iou top1=masks/top1 first=masks/first two=both/teach' ;;
-			second) made='both=masks/ciou two=both/teach two-chosen=masks/chosen two-pooled=masks/pooled two-pooled3d=masks/pooled3d onscene=masks/scene two-lifted=masks/lifted' ;;
+			second) made='both=masks/ciou two=both/teach onscene=masks/scene two-lifted=masks/lifted' ;;
 			lifted) made='both=masks/ciou two=both/teach onscene=masks/scene warmed=masks/scene lift=masks/scene lift-voted=masks/ciou' ;;
 			*) continue ;;
 			esac

@@ -13,7 +13,7 @@
 # RUNS        trainings to do, of those below; default all. A new one: RUNS="both mine" run.mine="--lambda 0.1"
 # BERTS       more language encoders for the encoder table, as NAME=DIR ...: any folders that text-encode reads, such as clip=DIR of a CLIP
 # BERT        folder of the language encoder; default: where `make encoder` puts it
-# TAUGHT      numbers of sentences of each thing in the table taught; default 0 100
+# TAUGHT      numbers of sentences of each thing in the table taught; default 0 200
 # THREADS     of each tool; default 1, because -j has several of them at work
 # BIN         folder of the tools; default: build/bin of this checkout, or the PATH where that is not there
 #
@@ -31,7 +31,7 @@ OUT ?= ablation
 SIZE ?= quick
 SCENES ?= diner toys tea kitchen
 THREADS ?= 1
-TAUGHT ?= 0 100
+TAUGHT ?= 0 200
 TRAIN ?= --feature-rate 0.01 --mlp-rate 0.0004
 tables := statistics unseen modules second similarity masks interaction width encoder contrast lifted taught hard space
 $(call check,,OUT BIN BERT,SIZE SCENES SEEDS RUNS SYNTH TRAIN BERTS SCALE ITERATIONS TAUGHT THREADS run.% masks.% text.% steps.% init.% lift.% \
@@ -81,14 +81,7 @@ run.pairs = --interaction pcmi --contrast pairs
 run.released = --interaction pcmi-proj --contrast pairs --lambda 0.1
 run.onscene = $(run.both)
 masks.onscene = masks/scene
-# Other second stages: one mask chosen of stage 1's for each object; stage 1's and the detector's, chosen together in
-# each view and in 3D; and the masks of the objects that were lifted from what was selected in 3D.
-run.two-chosen = $(run.both)
-masks.two-chosen = masks/chosen
-run.two-pooled = $(run.both)
-masks.two-pooled = masks/pooled
-run.two-pooled3d = $(run.both)
-masks.two-pooled3d = masks/pooled3d
+# Another second stage: the masks of the objects that were lifted from what was selected in 3D.
 run.two-lifted = $(run.both)
 masks.two-lifted = masks/lifted
 # Table 1 without the shortcuts of a step: every Gaussian has its own feature, every sentence is in the contrast.
@@ -136,7 +129,7 @@ interaction := none attention attention+fp add pcmi proj
 width := width1 width4 both width32
 encoder := both static $(encoders)
 contrast := pcmi dot both pairs released
-second := both two two-chosen two-pooled two-pooled3d onscene two-lifted
+second := both two onscene two-lifted
 exact := none none-exact pcmi pcmi-exact gtcl gtcl-exact both both-exact two two-exact two-lifted two-lifted-exact
 lifted := both two onscene warmed lift-sentence lift-words lift-names lift-colours lift-sizes lift-relations lift lift-voted $(foreach p,$(parts),lift-but-$(p))
 taught := none none-parses $(taught_runs)
@@ -204,19 +197,9 @@ $(1)/masks/%.jsonl: $(1)/data/made-by
 $(1)/both/teach.jsonl $(1)/both-exact/teach.jsonl: $(1)/%/teach.jsonl: $(1)/%/model.safetensors
 	$$(call log,$(1)/log/teach.$$*,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
 		--split train --sentences train --scale $(SCALE) -o $$@)
-$(1)/masks/lifted.jsonl $(1)/masks/answers.jsonl: $(1)/masks/%.jsonl:
-	$$(call log,$(1)/log/answers.$$*,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
-		--split train --sentences train -o $$@)
 $(1)/masks/lifted.jsonl: $(1)/lifted/full.safetensors
-$(1)/masks/answers.jsonl: $(1)/both/model.safetensors
-$(1)/masks/chosen.jsonl: $(1)/masks/answers.jsonl
-	$$(call log,$(1)/log/chosen,pseudomask-select --min-score 0 -o $$@ $$<)
-$(1)/masks/both.jsonl: $(1)/masks/answers.jsonl
-	cat $(1)/data/candidates.jsonl $$< >$$@
-$(1)/masks/pooled.jsonl: $(1)/masks/both.jsonl
-	$$(call log,$(1)/log/pooled,pseudomask-select -o $$@ $$<)
-$(1)/masks/pooled3d.jsonl: $(1)/masks/both.jsonl $(1)/weights/complete
-	$$(call log,$(1)/log/pooled3d,pseudomask-select --scene $(1)/scene --weights $(1)/weights -o $$@ $$<)
+	$$(call log,$(1)/log/answers,refer-render --scene $(1)/scene --text $(1)/text/contextual.safetensors --model $$< \
+		--split train --sentences train -o $$@)
 $(1)/%.quality.json: $(1)/%.jsonl
 	$(tool)miou-score --json --quiet --predicted-views --truth $(1)/data/truth.jsonl -o $$@ $$<
 endef
@@ -305,7 +288,7 @@ endef
 $(foreach t,$(tables) exact,$(eval $(call table_rules,$(t))))
 statistics masks: $(foreach c,$(cells),$(foreach m,ciou iou top1,$(c)/masks/$(m).quality.json))
 masks: $(foreach c,$(cells),$(c)/masks/first.quality.json $(c)/both/teach.quality.json)
-second: $(foreach c,$(cells),$(foreach m,ciou scene chosen pooled pooled3d lifted,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
+second: $(foreach c,$(cells),$(foreach m,ciou scene lifted,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
 unseen: $(foreach c,$(cells),$(foreach r,$(unseen),$(c)/$(r)/unseen.answers.json))
 space: $(foreach c,$(cells),$(foreach k,boxes whole visible,$(foreach t,test train,$(c)/lift/$(k).$(t).score.json)))
 lifted: $(foreach c,$(cells),$(foreach m,ciou scene,$(c)/masks/$(m).quality.json) $(c)/both/teach.quality.json)
