@@ -8,7 +8,7 @@ set -u
 here=$(cd "$(dirname "$0")/.." && pwd)
 bin=$(cd "$1" && pwd)
 gaussians=20000 size=160x120 threads="2 3 7 16 64"
-[ "${2:-}" != quick ] || gaussians=3000 size=64x48 threads="3 16"
+[ "${2:-}" != quick ] || gaussians=3000 size=64x48 threads="7"
 export OMP_WAIT_POLICY=passive PATH=$bin:$PATH
 unset OMP_NUM_THREADS OMP_THREAD_LIMIT
 work=${KEEP:-$(mktemp -d)}

@@ -4,8 +4,8 @@
 #include "reference_problem.h"
 
 enum {
-	SAMPLES = 12,		    /* entries of each array */
-	ARRAYS = REFER_TENSORS + 1, /* the slab's, and x */
+	SAMPLES = UNIT_DRAWS(12, 2), /* entries of each array */
+	ARRAYS = REFER_TENSORS + 1,  /* the slab's, and x */
 	CONTRASTS = REFER_CONTRASTS,
 };
 

@@ -285,7 +285,7 @@ static void selection_gains_as_in_the_paper(void)
 	struct err e = {0};
 
 	for (int number = 1; number < SYNTH_PRESETS; number++)
-		for (uint64_t seed = 1; seed <= 2; seed++) {
+		for (uint64_t seed = 1; seed <= UNIT_DRAWS(2, 1); seed++) {
 			if (make(&m, number, seed))
 				return;
 			for (int view = 0; view < (int)m.cameras.n; view++) {

@@ -8,7 +8,7 @@
 #include "synth/statistics.h"
 #include "synth/synth_scene.h"
 
-enum { SEEDS = 4, H = 91, W = 123 };
+enum { SEEDS = UNIT_DRAWS(4, 1), H = 91, W = 123 };
 
 static struct synth_options options(int number, uint64_t seed)
 {

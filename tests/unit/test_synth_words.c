@@ -5,7 +5,7 @@
 #include "synth/cameras.h"
 #include "synth/sentence.h"
 
-enum { SEEDS = 5, H = 90, W = 120 };
+enum { SEEDS = UNIT_DRAWS(5, 1), H = 90, W = 120 };
 
 static const int counts[] = {2, 3, 5, 8, 24};
 
