@@ -12,7 +12,7 @@
 static struct {
 	struct request_options request;
 	const char *ply, *splat, *each, *encoder;
-	int show, is_all, shows[LOCATE_REMOVED + 1];
+	int show, is_all, is_track, shows[LOCATE_REMOVED + 1];
 	double time;
 } options = {.request = REQUEST_DEFAULTS, .time = NAN};
 
@@ -26,6 +26,8 @@ static const struct cli_option table[] = {REQUEST_FILES(options.request), REQUES
 		"lifted models: where sentences are said (default: the view that a sentence names, else between the training views)"),
 	{"time", 0, CLI_REAL, &options.time, "T",
 		"of a scene that moves: where things are at this time (default: its first)", 0, 0},
+	CLI_SWITCH("track", &options.is_track,
+		"of a scene that moves: the box at every stored time of what is meant at --time"),
 	CLI_TEXT("ply", &options.ply, "FILE",
 		"write the scene with the object of the one sentence as a 3DGS .ply"),
 	CLI_TEXT("splat", &options.splat, "FILE", "the same as a .splat for web viewers"),
@@ -70,6 +72,8 @@ static int locate(struct locating *r, const struct cli *c, struct err *e)
 		(has_viewpoint && request_viewpoint(q, &from, e)) ||
 		request_answer(q, has_viewpoint ? &from : NULL, e))
 		return -1;
+	if (options.is_track)
+		return 0;
 	if (locating_find(r, up, e))
 		return -1;
 	cli_note(c, 1, "up is %.3f %.3f %.3f", up[0], up[1], up[2]);
@@ -93,8 +97,8 @@ static void check_all(const struct cli *c)
 
 	if (!options.is_all && options.each)
 		cli_usage(c, "--each is for --all");
-	if (options.is_all && (o->text || o->refs || o->viewpoint || o->time || o->sentences != REQUEST_ALL ||
-				      options.splat || options.show))
+	if (options.is_all && (o->text || o->refs || o->viewpoint || o->time || options.is_track ||
+				      o->sentences != REQUEST_ALL || options.splat || options.show))
 		cli_usage(
 			c, "--all goes with --scene, --model, --ply and --each only: it needs no sentences");
 }
@@ -107,7 +111,8 @@ static enum locate_show check_run(const struct cli *c)
 	if (c->operand_count < 2 || count != 1)
 		cli_usage(c, "RUN goes with a QUESTION and one of --colour, --alone and --remove");
 	if (options.request.text || options.is_all || options.ply || options.splat || options.show ||
-		options.request.refs || options.request.sentences != REQUEST_ALL || options.each)
+		options.request.refs || options.request.sentences != REQUEST_ALL || options.each ||
+		options.is_track)
 		cli_usage(c,
 			"RUN QUESTION goes with --scene, --model, --encoder, --viewpoint, --time and -o only: it needs no sentences");
 	if (anysplats_format_of(c->output) < 0)
@@ -146,6 +151,8 @@ static void check(const struct cli *c)
 	check_all(c);
 	if ((options.ply && !strcmp(options.ply, "-")) || (options.splat && !strcmp(options.splat, "-")))
 		cli_usage(c, "--ply and --splat must name a file");
+	if (options.is_track && (options.ply || options.splat))
+		cli_usage(c, "--track is for boxes: --ply and --splat are of one --time");
 	if (options.show && !options.ply && !options.splat)
 		cli_usage(c, "--show is for --ply and --splat");
 	cli_refuse_overwrite(c, CLI_SCENE " text model", "output ply splat each:*.ply", NULL);
@@ -158,7 +165,7 @@ static int answer(const struct cli *c, struct err *e)
 	return -(locate(&r, c, e) ||
 		 ((options.ply || options.splat) &&
 			 showing_write(&r, (enum locate_show)options.show, options.ply, options.splat, e)) ||
-		 locating_write(&r, c->output, e));
+		 (options.is_track ? locating_track(&r, c->output, e) : locating_write(&r, c->output, e)));
 }
 
 static int run(const struct cli *c, const struct report *to, struct err *e)

@@ -75,11 +75,17 @@ int labelling_write(const struct labelling *r, const char *path, struct err *e)
 	return file_out_end(&out, 0, e);
 }
 
-void locating_free(struct locating *r)
+static void forget(struct locating *r)
 {
 	for (size_t k = 0; r->answers && k < r->request.responses.answers; k++)
 		extent_free(&r->answers[k].extent);
 	free(r->answers);
+	r->answers = NULL;
+}
+
+void locating_free(struct locating *r)
+{
+	forget(r);
 	request_free(&r->request);
 }
 
@@ -130,7 +136,8 @@ static int make_parts(const struct locating *r, size_t answer, struct box_record
 	return *parts ? 0 : -1;
 }
 
-static int put(const struct locating *r, size_t i, FILE *out, struct err *e)
+/* With a time neither the parts nor the Gaussians, which it does not change. */
+static int put(const struct locating *r, size_t i, const double *time, FILE *out, struct err *e)
 {
 	const struct request *q = &r->request;
 	const size_t answer = q->responses.answer[i];
@@ -140,14 +147,16 @@ static int put(const struct locating *r, size_t i, FILE *out, struct err *e)
 	SCOPED struct box_record *parts = NULL;
 	struct box_record record;
 
-	if (make_parts(r, answer, &parts, e))
+	if (!time && make_parts(r, answer, &parts, e))
 		return -1;
 	record = anymodel_box(x, q->scene.offset, q->responses.sure ? q->responses.sure[i] : l->sure);
 	record.ref = q->text.refs[q->refs[i]];
 	record.object = (char *)text_object(&q->text, q->refs[i]);
 	record.parts = parts;
-	record.part_count = parts_of(&q->responses, answer);
-	boxes_put(out, &record, &of);
+	record.part_count = time ? 0 : parts_of(&q->responses, answer);
+	if (time)
+		snprintf(record.time, sizeof record.time, "%.17g", *time);
+	boxes_put(out, &record, time ? NULL : &of);
 	return 0;
 }
 
@@ -159,6 +168,37 @@ int locating_write(const struct locating *r, const char *path, struct err *e)
 	if (file_out_open(&out, path, e))
 		return -1;
 	for (size_t i = 0; i < r->request.count && !bad; i++)
-		bad = put(r, i, out.stream, e);
+		bad = put(r, i, NULL, out.stream, e);
 	return file_out_end(&out, bad, e);
+}
+
+static int track(struct locating *r, FILE *out, struct err *e)
+{
+	struct request *q = &r->request;
+	const struct motion *m = &q->scene.motion;
+	double up[3];
+	int bad = 0;
+
+	cameras_up(&q->scene.cameras, up);
+	for (size_t t = 0; t < m->times && !bad; t++) {
+		bad = scene_move(&q->scene, &m->at[t], e) ||
+		      !(r->answers = mem_zalloc(q->responses.answers, sizeof *r->answers, "objects", e)) ||
+		      locate_all(r->answers, &q->responses, &q->scene.splats, up, e);
+		for (size_t i = 0; i < q->count && !bad; i++)
+			bad = put(r, i, &m->at[t], out, e);
+		forget(r);
+	}
+	return bad ? -1 : 0;
+}
+
+int locating_track(struct locating *r, const char *path, struct err *e)
+{
+	struct file_out out;
+
+	if (!r->request.scene.motion.times)
+		return err_set(e, ERR_USAGE, "--track: %s is still: it has no motion.safetensors",
+			r->request.scene.path);
+	if (file_out_open(&out, path, e))
+		return -1;
+	return file_out_end(&out, track(r, out.stream, e), e);
 }

@@ -24,6 +24,10 @@ int locating_find(struct locating *r, double up[3], struct err *e);
 /* A line for each sentence, formats/records/boxes.md; "-" is stdout. */
 int locating_write(const struct locating *r, const char *path, struct err *e);
 
+/* The same at every stored time of a scene that moves, without finding it before: boxes of what is meant now.
+ */
+int locating_track(struct locating *r, const char *path, struct err *e);
+
 /* With its request. */
 void locating_free(struct locating *r);
 

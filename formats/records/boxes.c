@@ -70,13 +70,17 @@ static int read_boxes(const struct jsonl *j, const cJSON *object, struct box_rec
 static int read_record(const struct jsonl *j, const cJSON *object, void *record, struct err *e)
 {
 	struct box_record *r = record;
+	double time;
+	const int has_time = json_number(object, "time", 0, &time, j->where, e);
 
-	if (jsonl_name(j, object, "ref", NAME_DATA, 0, &r->ref, e) ||
+	if (has_time < 0 || jsonl_name(j, object, "ref", NAME_DATA, 0, &r->ref, e) ||
 		jsonl_name(j, object, "object", NAME_DATA, 0, &r->object, e) ||
 		jsonl_number(j, object, "score", &r->score, e))
 		return -1;
 	if (!r->ref && !r->object)
 		return jsonl_err(j, e, "neither key 'ref' nor key 'object'");
+	if (has_time)
+		snprintf(r->time, sizeof r->time, "%.17g", time);
 	return read_boxes(j, object, r, e);
 }
 
@@ -85,8 +89,8 @@ struct mask *boxes_names(const struct box_set *s, struct err *e)
 	struct mask *names = mem_alloc(s->n, sizeof *names, "boxes", e);
 
 	for (size_t i = 0; names && i < s->n; i++)
-		names[i] =
-			(struct mask){.view = "", .ref = s->records[i].ref, .object = s->records[i].object};
+		names[i] = (struct mask){
+			.view = s->records[i].time, .ref = s->records[i].ref, .object = s->records[i].object};
 	return names;
 }
 
@@ -181,6 +185,8 @@ void boxes_put(FILE *out, const struct box_record *r, const struct box_gaussians
 			r->colour[2]);
 	if (!isnan(r->score))
 		fprintf(out, ",\"score\":%.6g", r->score);
+	if (*r->time)
+		fprintf(out, ",\"time\":%s", r->time);
 	if (of)
 		fprintf(out, ",\"count\":%zu", of->n);
 	put_boxes(out, r);

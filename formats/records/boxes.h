@@ -11,6 +11,7 @@
 struct box_record {
 	char *ref, *object; /* either may be NULL, not both */
 	double score;	    /* NAN: none */
+	char time[32];	    /* of a track, when it is there, as text; "": none */
 	int is_empty;	    /* there is nothing, and no box */
 	struct box aligned; /* along the world's axes */
 	struct box turned;
@@ -25,12 +26,12 @@ struct box_set {
 	struct box_record *records;
 };
 
-/* "-" is stdin. Two records of one ref (or, without ref, of one object) are an error. */
+/* "-" is stdin. Two records of one ref (or, without ref, of one object) and of one time are an error. */
 int boxes_read(struct box_set *s, const char *path, struct err *e);
 void boxes_free(struct box_set *s);
 
-/* Their refs and objects as those of masks without pixels in one view, "", so that mask/mask_index.h finds
- * boxes too. NULL with *e set; free() it before the boxes. */
+/* Their refs and objects as those of masks without pixels in one view, "" (a track's: its time), so that
+ * mask/mask_index.h finds boxes too. NULL with *e set; free() it before the boxes. */
 struct mask *boxes_names(const struct box_set *s, struct err *e);
 
 /* The Gaussians that a box is of: ids (n). */

@@ -91,6 +91,20 @@ setup() {
 Try 'refer-render --help'." render still --time 0
 }
 
+@test "a track: where what is meant is at every stored time" {
+	times '.time = 0' >first.json
+	[ -e two/scene ] || chain two frames --cameras first.json
+	track() { "$BIN/refer-locate" -q --scene two/scene --text text.safetensors --model two/lifted/model.safetensors "$@"; }
+	track --track -o track.jsonl
+	"$BIN/gs-check" track.jsonl
+	[ "$(jq -s 'map(.time) | unique' -c track.jsonl)" = "[0,1]" ]
+	cmp <(jq -c 'select(.time == 0) | [.ref, .min, .max, .oriented]' track.jsonl) <(track | jq -c '[.ref, .min, .max, .oriented]')
+	# All things move together here, so that the same is meant at either time.
+	cmp <(jq -c 'select(.time == 1) | [.ref, .min, .max, .oriented]' track.jsonl) <(track --time 1 | jq -c '[.ref, .min, .max, .oriented]')
+	says 2 "refer-locate: --track: still/scene is still: it has no motion.safetensors
+Try 'refer-locate --help'." "$BIN/refer-locate" -q --track --scene still/scene --text text.safetensors --model still/lifted/model.safetensors
+}
+
 @test "views without a time are not drawn" {
 	times '.' >none.json
 	"$BIN/gs-import" -q --cameras none.json -o none frames
