@@ -235,12 +235,13 @@ static int answer_all(const char *question, struct asking_answer *found, struct 
 }
 
 /* What stands in a relation: where no one thing is likely to be meant alone, all that does. Of what lies to
- * one side, one is told sooner. */
+ * one side of a thing, one is told sooner. */
 static int answer_set(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e)
 {
 	const int relation = t->asked.relation;
-	const int is_side = relation >= 0 && (relation <= PARSE_BELOW || relation == PARSE_BETWEEN);
+	const int is_side = relation >= 0 && (relation <= PARSE_BELOW || relation == PARSE_BETWEEN) &&
+			    !question_is_half(t->understood);
 
 	if (asking_ask(a, t->asked.text[0], 0, found, to, e))
 		return -1;

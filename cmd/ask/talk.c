@@ -208,6 +208,24 @@ static void find_referents(const struct talk *talk, char *const *names, size_t o
 		snprintf(r->noun, sizeof r->noun, "%s", noun);
 }
 
+/* "How much taller?", of the two things that were spoken of. */
+static int ask_how_much(const struct tokens *t, const struct referents *r, char understood[QUESTION_TEXT])
+{
+	const int is_it = t->n == 5 && tokens_class(t, 3) == CLOSED_BE && tokens_is(t, 4, "it|that|he|she");
+	const int class = tokens_class(t, 2);
+
+	if (!tokens_is(t, 0, "how") || !tokens_is(t, 1, "much") ||
+		(class != CLOSED_SIZE && class != CLOSED_PLACE) || (t->n > 3 && !is_it) ||
+		(!*r->things && !*r->other))
+		return 0;
+	if (*r->things)
+		snprintf(understood, QUESTION_TEXT, "how much %s is %s", t->word[2].text, r->things);
+	else
+		snprintf(understood, QUESTION_TEXT, "how much %s is the %s than the %s", t->word[2].text,
+			r->name, r->other);
+	return 1;
+}
+
 const struct meaning_set *talk_understand(const struct talk *talk, char *const *names, size_t objects,
 	const char *question, char understood[QUESTION_TEXT])
 {
@@ -223,6 +241,8 @@ const struct meaning_set *talk_understand(const struct talk *talk, char *const *
 	}
 	question_read(&last, talk->question, 0);
 	find_referents(talk, names, objects, &last, &r);
+	if (ask_how_much(&t, &r, understood))
+		return NULL;
 	const int other = is_other(&t), thing = find_again(talk, &last, &t, question);
 	if (other == t.n || thing >= 0)
 		return understand_part(talk, &last, &r,

@@ -103,7 +103,8 @@ static double choose_phrase(struct chooser *c, const struct parse *p, int phrase
 			c->score[o] *= sharpness(c);
 		softmax(c->score, n);
 		chosen[best] = 1;
-	} else {
+	} else if (there >= PARSE_LEAST ||
+		   !p->phrases[0].also.n) {	     /* of plates and bowls there may be no plates */
 		for (int k = 0; k < f->count; k++) { /* "three": the best three */
 			size_t next = n;
 			for (size_t o = 0; o < n; o++)

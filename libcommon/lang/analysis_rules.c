@@ -39,7 +39,7 @@ static int noun_of_run(const struct analysis *a, const struct tokens *t, int i)
 {
 	int last = -1;
 
-	for (; i < t->n && !t->word[i].before; i++) {
+	for (const int first = i; i < t->n && (i == first || !t->word[i].before); i++) {
 		const int class = tokens_class(t, i);
 		if (class >= 0 && class != CLOSED_ATTRIBUTE && class != CLOSED_SIZE &&
 			class != CLOSED_GENERIC)
@@ -49,6 +49,28 @@ static int noun_of_run(const struct analysis *a, const struct tokens *t, int i)
 			return i;
 	}
 	return last;
+}
+
+/* "everything but the bowls, the mugs and a plate": what a list goes on with is left out too. */
+static void take_excepts(struct analysis *a, const struct tokens *t)
+{
+	int is_all = 0, i = 0, noun;
+
+	for (; i < t->n && a->word[i].role != ROLE_EXCEPT; i++)
+		is_all |= tokens_class(t, i) == CLOSED_GENERIC ||
+			  tokens_is(t, i, "all|everything|anything|else|what|which|objects|items");
+	while (is_all && ++i < t->n &&
+		(t->word[i].before == PAUSE_COMMA || tokens_class(t, i) == CLOSED_CONJUNCTION)) {
+		while (tokens_class(t, i) == CLOSED_CONJUNCTION || tokens_class(t, i) == CLOSED_DETERMINER ||
+			tokens_class(t, i) == CLOSED_NUMBER)
+			i++;
+		noun = noun_of_run(a, t, i);
+		if (noun < 0 || (a->word[noun].role != ROLE_TARGET && a->word[noun].role != ROLE_ALSO &&
+					a->word[noun].role != ROLE_EXCEPT))
+			return;
+		a->word[noun] = (struct analysis_word){.role = ROLE_EXCEPT, .head = ROOT};
+		i = noun;
+	}
 }
 
 /* "an empty plate", "the plates are still empty": they carry nothing. */
@@ -233,6 +255,8 @@ void analysis_apply_rules(struct analysis *a, const struct tokens *t, unsigned w
 {
 	if (rule_counts(without, RULE_isnt))
 		take_isnt(a, t);
+	if (rule_counts(without, RULE_excepts))
+		take_excepts(a, t);
 	if (rule_counts(without, RULE_viewer))
 		take_viewer(a, t);
 	if (rule_counts(without, RULE_over_by))

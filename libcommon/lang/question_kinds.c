@@ -80,6 +80,17 @@ static int is_break(const struct tokens *t, const char *text, int at)
 	return 0;
 }
 
+/* Whether a pause before a word goes on with a list: "bottles, bowls and mugs". */
+static int is_listed(const struct tokens *t, int at)
+{
+	static const unsigned of_thing = 1U << CLOSED_DETERMINER | 1U << CLOSED_ATTRIBUTE | 1U << CLOSED_SIZE;
+	int i = at;
+
+	while (i < t->n && (tokens_class(t, i) < 0 || of_thing >> tokens_class(t, i) & 1))
+		i++;
+	return t->word[at].before == PAUSE_COMMA && i > at && tokens_class(t, i) == CLOSED_CONJUNCTION;
+}
+
 enum { ASIDE_WORDS = 3 };
 
 /* Whether words behind a pause say nothing of the thing that was asked for before it: "would you?", but not
@@ -90,7 +101,7 @@ static int is_aside(const struct tokens *t, const char *text, int at)
 				     1U << CLOSED_EXCEPT | 1U << CLOSED_RELATIVE | 1U << CLOSED_NEGATION;
 	const int class = at < t->n ? tokens_class(t, at) : -1;
 
-	return at && at < t->n && t->n - at <= ASIDE_WORDS && is_break(t, text, at) &&
+	return at && at < t->n && t->n - at <= ASIDE_WORDS && is_break(t, text, at) && !is_listed(t, at) &&
 	       (class < 0 || !(more >> class & 1));
 }
 
@@ -122,7 +133,7 @@ static int match_words(struct matching *m, int which, int is_place, const char *
 		m->of[which] = (struct capture){at, end};
 		if (match(m, rest, end))
 			return 1;
-		if (end < m->tokens->n && is_break(m->tokens, m->text, end))
+		if (end < m->tokens->n && is_break(m->tokens, m->text, end) && !is_listed(m->tokens, end))
 			break;
 	}
 	return 0;
@@ -320,9 +331,8 @@ int question_is_any(const char *phrase)
 	return tokens_is(&t, 0, "a|an|any|some|one|anything|something|anyone|someone|anybody|somebody");
 }
 
-int question_is_open(const char *text)
+static int has_word(const char *text, const char *words)
 {
-	static const char words[] = "what|whatever|something|anything|everything|ones|things";
 	struct tokens t;
 	int is = 0;
 
@@ -330,4 +340,14 @@ int question_is_open(const char *text)
 	for (int i = 0; i < t.n; i++)
 		is |= tokens_is(&t, i, words);
 	return is;
+}
+
+int question_is_open(const char *text)
+{
+	return has_word(text, "what|whatever|something|anything|everything|ones|things");
+}
+
+int question_is_half(const char *text)
+{
+	return has_word(text, "side|half|part");
 }

@@ -51,3 +51,6 @@ int question_is_any(const char *phrase);
 /* Whether a text asks for whatever there is, "what can I drink from?", "the ones to read", and not for one.
  */
 int question_is_open(const char *text);
+
+/* Whether a text asks for a whole side of the scene: "on the left side". */
+int question_is_half(const char *text);
