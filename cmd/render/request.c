@@ -127,7 +127,7 @@ int request_answer(struct request *r, const struct viewpoint *from, struct err *
 {
 	const struct request_options *o = r->options;
 	const struct anymodel_ask ask = {&r->scene, &r->text, o->model, o->scene, o->text, r->refs, r->count,
-		!o->is_plain, r->parts, o->least, o->wants_parts, from};
+		!o->is_plain, r->parts, o->least, o->wants_parts, from, &r->memo};
 
 	responses_free(&r->responses);
 	if (anymodel_track(&r->model, &r->scene, e))
@@ -141,5 +141,6 @@ void request_free(struct request *r)
 	text_free(&r->text);
 	anymodel_free(&r->model);
 	responses_free(&r->responses);
+	parser_memo_free(&r->memo);
 	free(r->refs);
 }

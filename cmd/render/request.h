@@ -50,6 +50,7 @@ struct request {
 	size_t count, *refs; /* (count) the sentences, as indices in text */
 	unsigned parts;	     /* of choose() */
 	struct responses responses;
+	struct parser_memo memo; /* for views of other times */
 };
 
 /* Reads the files. *r is zeroed before; options stay the caller's. All return 0, or -1 with *e set, ERR_USAGE

@@ -141,7 +141,7 @@ int report_answer(const struct report_run *r, struct report_set *s, const struct
 	struct camera views[MOST_VIEWS];
 	SCOPED size_t *refs = mem_alloc(s->text.n, sizeof *refs, "sentences", e);
 	/* what is read stays the run's */
-	struct request q = {&options, r->scene, s->text, r->lifted, s->text.n, refs, CHOOSE_ALL, {0}};
+	struct request q = {&options, r->scene, s->text, r->lifted, s->text.n, refs, CHOOSE_ALL, {0}, {0}};
 	struct drawing d = {.options = &how, .request = &q, .put = keep_mask, .data = s};
 
 	if (!refs)
@@ -154,5 +154,6 @@ int report_answer(const struct report_run *r, struct report_set *s, const struct
 	d.views = NULL;
 	drawing_free(&d);
 	responses_free(&q.responses);
+	parser_memo_free(&q.memo);
 	return bad;
 }

@@ -200,7 +200,8 @@ int anymodel_answer(
 {
 	const struct model *t = &m->trained;
 	const float *means = q->scene->splats.means;
-	const struct parser parser = {.weights = &m->weights, .encoder = q->text->encoder.hex};
+	const struct parser parser = {
+		.weights = &m->weights, .encoder = q->text->encoder.hex, .memo = q->memo};
 	struct responses_question of = {&q->scene->splats, &q->scene->cameras, q->text->offsets,
 		q->text->words, q->text->middle, q->text->texts, q->text->pieces, NULL, &parser,
 		m->tracks.times ? &m->tracks : NULL, q->which, q->count, q->text->refs,

@@ -53,6 +53,7 @@ struct anymodel_ask {
 	int wants_parts;
 	const struct viewpoint
 		*from; /* where all sentences are said; NULL: each of the view that it names, if any */
+	struct parser_memo *memo; /* of who asks the same again; NULL: nobody */
 };
 
 /* What the model answers to sentences. ERR_FORMAT where it is not of this scene, or the text does not fit or

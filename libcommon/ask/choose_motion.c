@@ -37,7 +37,9 @@ static int parse_some(struct parse *p, const struct parse *whole, const struct p
 	const int count = (end < whole->word_count ? whole->words[end].piece : (int)s->words) - piece;
 	const struct parser_vectors v = {
 		pieces, s->middle ? s->middle + (size_t)piece * (size_t)width : NULL, count, width};
-	if (parse_sentence(p, parser, text, &v, e))
+	struct parser once = *parser;
+	once.memo = NULL; /* the text does not stay */
+	if (parse_sentence(p, &once, text, &v, e))
 		return -1;
 	for (int i = 0; i < p->word_count; i++)
 		p->words[i].piece += piece;

@@ -38,6 +38,39 @@ static const struct parser_weights *weights_for(const struct parser *parser, con
 	return is_known && strcmp(w->encoder, parser->encoder) ? w->grammar : w;
 }
 
+struct parser_memory {
+	const char *text;
+	int known_count;
+	double sure;
+	struct analysis said;
+};
+
+void parser_memo_free(struct parser_memo *m)
+{
+	free(m->items);
+	*m = (struct parser_memo){0};
+}
+
+/* analyse(), or what it said before. */
+static int analyse_once(struct analysis *a, const struct tokens *t, const struct parser *parser,
+	const char *text, const struct parser_vectors *v, double *sure, struct err *e)
+{
+	struct parser_memo *m = parser->memo;
+
+	for (size_t i = 0; m && i < m->n; i++)
+		if (m->items[i].text == text && m->items[i].known_count == parser->known_count) {
+			*a = m->items[i].said;
+			*sure = m->items[i].sure;
+			return 0;
+		}
+	if (analyse(a, t, weights_for(parser, v), v, sure, e) ||
+		(m && mem_grow((void **)&m->items, &m->capacity, m->n + 1, sizeof *m->items, "sentences", e)))
+		return -1;
+	if (m)
+		m->items[m->n++] = (struct parser_memory){text, parser->known_count, *sure, *a};
+	return 0;
+}
+
 int parse_sentence(struct parse *p, const struct parser *parser, const char *text,
 	const struct parser_vectors *v, struct err *e)
 {
@@ -48,7 +81,7 @@ int parse_sentence(struct parse *p, const struct parser *parser, const char *tex
 
 	v = v ? v : &none;
 	tokens_take(&t, text, v->pieces, parser->known, parser->known_count);
-	if (t.n && analyse(&a, &t, weights_for(parser, v), v, &sure, e))
+	if (t.n && analyse_once(&a, &t, parser, text, v, &sure, e))
 		return -1;
 	analysis_apply_rules(&a, &t, parser->without);
 	if (parse_build(p, &a, &t, parser->without, e))
