@@ -28,6 +28,8 @@ static const struct cli_option table[] = {REQUEST_FILES(options.request),
 		"lifted models: where sentences are said; each: in every view that is rendered (default: the view that a sentence names, else between the training views)"),
 	{"time", 0, CLI_REAL, &options.time, "T",
 		"of a scene that moves: everything at this time (default: each view at its own)", 0, 0},
+	CLI_SWITCH("all-times", &options.draw.is_all_times,
+		"of a scene that moves: each view at every stored time, as VIEW.tNNNNN"),
 	CLI_SWITCH("when", &options.draw.is_when,
 		"of a scene that moves: no mask in views of a time that a sentence of motion does not mean"),
 	CLI_SWITCH("parts", &options.request.wants_parts,
@@ -67,6 +69,8 @@ static void check(const struct cli *c)
 		cli_usage(c, "--size and --scale do not go together");
 	if (options.draw.peak && options.draw.is_amodal)
 		cli_usage(c, "--peak and --amodal do not go together");
+	if (options.draw.is_all_times && !isnan(options.time))
+		cli_usage(c, "--time and --all-times do not go together");
 	options.request.time = isnan(options.time) ? NULL : &options.time;
 	options.draw.is_each = o->viewpoint && !strcmp(o->viewpoint, "each");
 }

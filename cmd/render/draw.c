@@ -15,7 +15,21 @@ static int add_view(struct drawing *d, const struct camera *view, struct err *e)
 		camera_scaled_size(view, o->scale ? o->scale : 1, &width, &height);
 	if (rle_check_size(height, width, e))
 		return err_prefix(e, view->name);
-	d->views[d->view_count++] = camera_resize(view, width, height);
+	const struct camera own = camera_resize(view, width, height);
+	const struct motion *m = &d->request->scene.motion;
+	for (size_t t = 0; t < (d->names ? m->times : 1); t++) {
+		struct camera *to = &d->views[d->view_count];
+		*to = own;
+		if (d->names) {
+			const size_t room = strlen(view->name) + 24;
+			to->has_time = 1;
+			to->time = m->at[t];
+			if (!(to->name = d->names[d->view_count] = mem_alloc(room, 1, "views", e)))
+				return -1;
+			snprintf(to->name, room, "%s.t%05zu", view->name, t);
+		}
+		d->view_count++;
+	}
 	return 0;
 }
 
@@ -26,7 +40,13 @@ int draw_choose(struct drawing *d, const struct draw_options *options, struct re
 
 	d->options = options;
 	d->request = request;
-	int bad = !chosen || !(d->views = mem_alloc(from->n, sizeof *d->views, "views", e)) ||
+	const size_t times = options->is_all_times ? request->scene.motion.times : 1;
+	if (!times)
+		return err_set(e, ERR_USAGE, "--all-times: %s is still: it has no motion.safetensors",
+			request->scene.path);
+	int bad = !chosen || !(d->views = mem_alloc(from->n, times * sizeof *d->views, "views", e)) ||
+		  (options->is_all_times &&
+			  !(d->names = mem_zalloc(from->n, times * sizeof *d->names, "views", e))) ||
 		  (options->views && cameras_mark(from, options->views, "--views", chosen, e));
 	for (size_t i = 0; i < from->n && !bad; i++)
 		if (options->views ? chosen[i]
@@ -239,4 +259,6 @@ void drawing_free(struct drawing *d)
 	if (d->request)
 		free_wholes(d);
 	free(d->views);
+	if (d->names)
+		mem_free_strings(d->names, d->view_count);
 }

@@ -14,10 +14,11 @@ struct draw_options {
 	const char *views; /* NAME,...: these views instead; NULL: of the split */
 	int size[2];	   /* of the masks: width and height; 0: the view's times scale (0: 1) */
 	double scale;
-	int is_amodal;	/* outlines of whole objects */
-	long long peak; /* the window of answer/peak.h where records have peaks; 0: they have none */
-	int is_each;	/* all sentences are said in the view that is drawn */
-	int is_when;	/* nothing is shown in views of a time that a sentence of motion does not mean */
+	int is_amodal;	  /* outlines of whole objects */
+	long long peak;	  /* the window of answer/peak.h where records have peaks; 0: they have none */
+	int is_each;	  /* all sentences are said in the view that is drawn */
+	int is_all_times; /* each view at every stored time, as VIEW.tNNNNN */
+	int is_when;	  /* nothing is shown in views of a time that a sentence of motion does not mean */
 	struct pictures pictures;
 };
 
@@ -25,7 +26,8 @@ struct drawing {
 	const struct draw_options *options;
 	struct request *request;
 	size_t view_count;
-	struct camera *views; /* (view_count) at the size of the masks; names are the scene's */
+	struct camera *views; /* (view_count) at the size of the masks; names are the scene's, or: */
+	char **names;	      /* (view_count), NULL where they are the scene's */
 	/* While it goes on: */
 	const struct report *to;
 	/* gets the record of a sentence in a view, and of its parts (n), which are not its own */

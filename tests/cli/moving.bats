@@ -105,6 +105,21 @@ Try 'refer-render --help'." render still --time 0
 Try 'refer-locate --help'." "$BIN/refer-locate" -q --track --scene still/scene --text text.safetensors --model still/lifted/model.safetensors
 }
 
+@test "every view at every stored time" {
+	times '.time = 0' >first.json
+	[ -e two/scene ] || chain two frames --cameras first.json
+	render two --all-times -o all.jsonl --overlay all
+	"$BIN/gs-check" all.jsonl
+	for t in 0 1; do
+		render two --time $t | jq -c '{view, ref, segmentation}' | cmp - <(jq -c "select(.view | endswith(\".t0000$t\")) | {view: .view[:-7], ref, segmentation}" all.jsonl)
+	done
+	[ "$(ls all | wc -l)" = "$((2 * $(jq length two/scene/cameras.json)))" ]
+	says 2 "refer-render: --all-times: still/scene is still: it has no motion.safetensors
+Try 'refer-render --help'." render still --all-times
+	says 2 "refer-render: --time and --all-times do not go together
+Try 'refer-render --help'." render two --all-times --time 1
+}
+
 @test "views without a time are not drawn" {
 	times '.' >none.json
 	"$BIN/gs-import" -q --cameras none.json -o none frames
