@@ -303,19 +303,10 @@ static int try_draft(struct drafter *d, size_t object, int is_named, int is_deni
 
 void drafter_draw(struct drafter *d, size_t object, struct draft *to)
 {
-	static const char *const before[] = {"something to", "the thing to", "something that you use to",
-		"the object which is used to", "the thing that you need to"}; /* "boil water" */
 	const int is_absent = object == d->objects, is_counted = !is_absent && is_likely(d, 4),
 		  is_named = is_likely(d, 55), is_denied = is_likely(d, 18);
-	const char *use =
-		!is_absent && !is_counted && is_likely(d, 12) ? draw_part(d, object, SAYING_USE) : NULL;
 
 	*to = (struct draft){0};
-	if (use) {
-		put(to, draw_text(d, before, 5));
-		put(to, use);
-		return;
-	}
 	put(to, "the");
 	if (is_absent)
 		put_absent(d, to);

@@ -76,30 +76,7 @@ static int nouns_read(struct nouns *to, struct err *e)
 	return 0;
 }
 
-/* What the table of things says that things of this noun are for. */
-static int add_uses(struct saying_parts *s, size_t object, const struct things_rows *rows, struct err *e)
-{
-	for (int i = 0; i < rows->n; i++) {
-		size_t left;
-		const char *at = things_text(rows->row[i], THINGS_USES, &left), *end;
-		for (size_t n; at && left; at += n, left -= n) {
-			char use[SAYING_PART];
-			end = memchr(at, ';', left);
-			n = end ? (size_t)(end - at) : left;
-			if (n < sizeof use) {
-				memcpy(use, at, n);
-				use[n] = 0;
-				if (add_part(s, object, SAYING_USE, use, e))
-					return -1;
-			}
-			while (n < left && (at[n] == ';' || at[n] == ' '))
-				n++;
-		}
-	}
-	return 0;
-}
-
-/* What a thing of this noun may be called too, and what it is for. */
+/* What a thing of this noun may be called too. */
 static int add_synonyms(
 	struct saying_parts *s, size_t object, const char *lemma, const struct nouns *nouns, struct err *e)
 {
@@ -113,7 +90,7 @@ static int add_synonyms(
 			add_part(s, object, SAYING_SYNONYM, n->text, e))
 			return -1;
 	}
-	return add_uses(s, object, &thing.things, e);
+	return 0;
 }
 
 /* "with a yellow scarf", as it stands in the text: nothing where more is said of what it has. */

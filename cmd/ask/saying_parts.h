@@ -12,7 +12,6 @@ enum saying_part {
 	SAYING_SYNONYM,
 	SAYING_LOOK,   /* "red", "small" */
 	SAYING_HAVING, /* "with a yellow scarf" */
-	SAYING_USE,    /* "boil water", of the table of things (lang/things.h) */
 	SAYING_KINDS
 };
 
