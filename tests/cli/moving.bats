@@ -197,3 +197,26 @@ lifted() {
 		rm -r again
 	done
 }
+
+# answers OPTION...: what sentences of motion are answered with, of the scene of the test before.
+answers() {
+	jq -r .text moves/moving.jsonl >questions
+	"$BIN/refer-ask" -q --json --encoder encoder --scene moves/lifted/scene --model moves/lifted/model.safetensors "$@" moves <questions || [ $? = 1 ]
+}
+
+@test "words of motion: which thing moves so, and when; what nothing does is refused" {
+	answers >replies
+	right() { jq -n --slurpfile r replies --slurpfile a moves/moving.jsonl "[range(\$a | length) as \$i | \$a[\$i] + {got: [\$r[\$i] | select(.answered).things[].name] | sort} | select($1) |
+		.got == (.objects | sort)] | (map(select(.)) | length) / length > $2" | grep -x true; }
+	right '.objects != [] and .kind != "motion-plain"' 0.85
+	right '.objects == []' 0.9
+	# a sentence that says nothing of motion has no time, and what is refused a reason
+	jq -n --slurpfile r replies --slurpfile a moves/moving.jsonl '[range($a | length) as $i | $r[$i] | if .answered then has("when") == ($a[$i].kind != "motion-plain") else .reason != "" end] | all' | grep -x true
+	answers --threads 7 | cmp - replies
+	# masks of these times alone, and the records of all views say them
+	ask() { "$BIN/refer-render" -q --split all --scene moves/lifted/scene --text moves/text.safetensors --model moves/lifted/model.safetensors "$@"; }
+	ask --when -o when.jsonl
+	"$BIN/miou-score" -q --answers --json --sentences moves/moving.jsonl --truth moves/truth.jsonl when.jsonl | jq '.all.viou > 0.85 and .all.tiou > 0.85' | grep -x true
+	jq -c '[.view, .ref, .when]' when.jsonl | cmp - <(jq -c '[.view, .ref, .when]' moves/lifted/masks.jsonl)
+	"$BIN/gs-check" when.jsonl >check
+}
