@@ -72,14 +72,21 @@ static struct motions_span time_by(
 
 /* m->motion: when the target's motion may be, by the sentence of another's. */
 static int find_time(struct meaning *m, const struct choose_sentence *s, struct parse *other,
-	enum motion_kind when, struct err *e)
+	enum motion_kind *rank, enum motion_kind when, struct err *e)
 {
 	struct motion_meaning *to = m->motion;
 	const struct vocabulary_sentence v = {other, s->vectors, s->words};
 	const size_t n = objects_of(m);
 
-	if (!motion_said_take(&to->said, other))
-		return 0;
+	for (int w = 0; w < other->word_count && when != MOTION_WHILE; w++)
+		if (parse_word_is(other, w, "other|others|else|rest|everything|anything|any|all")) {
+			*rank = when == MOTION_BEFORE ? MOTION_FIRST : MOTION_LAST;
+			return 0;
+		}
+	if (!motion_said_take(&to->said, other)) {
+		to->said.n = 1;
+		to->said.events[0] = (struct motion_event){.kind = MOTION_MOVES, .about = -1};
+	}
 	const int is_same = is_same_thing(other);
 	const enum motion_kind gone = to->said.events[0].kind;
 	if (judge_sentence(m, &v, e))
@@ -100,6 +107,7 @@ int choose_motion(struct meaning *m, const struct choose_scene *scene, const str
 {
 	struct motion_meaning *to = m->motion;
 	struct motion_cut cut;
+	enum motion_kind rank = MOTION_NONE;
 	struct parse main = {0}, other = {0};
 	int bad = 0;
 
@@ -110,14 +118,19 @@ int choose_motion(struct meaning *m, const struct choose_scene *scene, const str
 		bad = parse_some(&main, p, parser, s, width, cut.begin, cut.end, e) ||
 		      (cut.when != MOTION_NONE &&
 			      (parse_some(&other, p, parser, s, width, cut.other_begin, cut.other_end, e) ||
-				      find_time(m, s, &other, cut.when, e)));
+				      find_time(m, s, &other, &rank, cut.when, e)));
 		const struct parse whole = *p;
 		*p = main;
 		main = whole;
 	}
 	parse_free(&main);
 	parse_free(&other);
-	return bad ? -1 : (motion_said_take(&to->said, p), 0);
+	if (bad)
+		return -1;
+	motion_said_take(&to->said, p);
+	if (rank != MOTION_NONE && to->said.n < MOTION_EVENTS)
+		to->said.events[to->said.n++] = (struct motion_event){.kind = rank, .about = -1};
+	return 0;
 }
 
 void choose_when(const struct motion_meaning *m, const char *chosen, double when[2])

@@ -12,7 +12,7 @@ extern const unsigned char motion_words_begin[];
 static const char *const names[MOTION_KINDS] = {"moves", "still", "starts", "stops", "pauses", "falls",
 	"raised", "lowered", "rolls", "slides", "turns", "tips", "left", "right", "up", "down", "towards",
 	"away", "passes", "behind", "front", "swaps", "follows", "fastest", "slowest", "farthest", "least",
-	"first", "last", "while", "before", "after"};
+	"first", "last", "while", "before", "after", "time"};
 
 const char *motion_kind_name(enum motion_kind kind)
 {
@@ -81,16 +81,18 @@ static enum motion_kind kind_of(const char *line)
 	return (enum motion_kind)k;
 }
 
-int motion_row_find(const struct parse *p, int at, int end, char slot, struct motion_row *r)
+int motion_row_find(
+	const struct parse *p, int at, int end, char slot, int may_have_other, struct motion_row *r)
 {
 	*r = (struct motion_row){MOTION_NONE, at, 0};
 	for (const char *row = (const char *)motion_words_begin; *row; row += strcspn(row, "\n") + 1) {
 		const char *columns = row + strcspn(row, "\t");
-		if (*row == '#' || columns[1] != slot)
+		const int has_other = row[strcspn(row, "\n") - 1] == 'B';
+		if (*row == '#' || columns[1] != slot || has_other > may_have_other)
 			continue;
 		const int to = match(p, at, end, columns + 3);
 		if (to > r->end)
-			*r = (struct motion_row){kind_of(row), to, row[strcspn(row, "\n") - 1] == 'B'};
+			*r = (struct motion_row){kind_of(row), to, has_other};
 	}
 	return r->kind != MOTION_NONE;
 }

@@ -10,5 +10,7 @@ struct motion_row {
 };
 
 /* The longest row of a slot, the table's letter, that fits a parse's words from `at` on, and of those the
- * first. Returns whether there is one. */
-int motion_row_find(const struct parse *p, int at, int end, char slot, struct motion_row *r);
+ * first; without may_have_other only of those that need no words for another thing. Returns whether there is
+ * one. */
+int motion_row_find(
+	const struct parse *p, int at, int end, char slot, int may_have_other, struct motion_row *r);

@@ -22,7 +22,7 @@ static int is_noun(const struct parse *p, int at, const struct motion_row *r)
 	static const unsigned before = 1U << CLOSED_DETERMINER | 1U << CLOSED_ATTRIBUTE | 1U << CLOSED_SIZE;
 	const char *word = p->words[at].text;
 
-	if (r->kind == MOTION_LOWERED &&
+	if (r->kind == MOTION_LOWERED && parse_word_is(p, at, "set|put|laid|placed") &&
 		!class_in(p, at - 1,
 			1U << CLOSED_BE | 1U << CLOSED_AUXILIARY | 1U << CLOSED_RELATIVE |
 				1U << CLOSED_ADVERB) &&
@@ -31,8 +31,8 @@ static int is_noun(const struct parse *p, int at, const struct motion_row *r)
 	if (parse_word_is(p, at, "still") && r->end == at + 1)
 		return r->end < p->word_count && !class_in(p, at - 1, before) &&
 		       !parse_word_is(p, r->end, "while|when|before|after|until|and|one|ones|thing");
-	return !token_ends(word, "ing", 2) && !token_ends(word, "ed", 2) && r->end == at + 1 &&
-	       class_in(p, at - 1, before) && !parse_word_is(p, at - 1, "this|that");
+	return r->kind != MOTION_STILL && !token_ends(word, "ing", 2) && !token_ends(word, "ed", 2) &&
+	       r->end == at + 1 && class_in(p, at - 1, before) && !parse_word_is(p, at - 1, "this|that");
 }
 
 /* In what way it moves, and nothing else. */
@@ -107,7 +107,9 @@ static int phrase_at(const struct parse *p, int word)
 /* A row of a slot, with the other thing if it needs one. */
 static int find_row(const struct parse *p, int at, int end, char slot, struct motion_row *r)
 {
-	return motion_row_find(p, at, end, slot, r) && (!r->has_other || phrase_at(p, r->end) != NOTHING);
+	return (motion_row_find(p, at, end, slot, 1, r) &&
+		       (!r->has_other || phrase_at(p, r->end) != NOTHING)) ||
+	       motion_row_find(p, at, end, slot, 0, r);
 }
 
 static int find_verb(const struct parse *p, int from, int end, struct motion_row *r)
@@ -121,7 +123,9 @@ static int find_verb(const struct parse *p, int from, int end, struct motion_row
 static int is_negated(const struct parse *p, int at)
 {
 	for (int k = at - 1; k >= 0 && k >= at - 4; k--)
-		if (class_in(p, k, 1U << CLOSED_NEGATION) && !parse_word_is(p, k, "without"))
+		if ((class_in(p, k, 1U << CLOSED_NEGATION) && !parse_word_is(p, k, "without")) ||
+			parse_word_is(p, k, "nobody|none|nothing") ||
+			(parse_word_is(p, k, "one") && parse_word_is(p, k - 1, "no")))
 			return 1;
 		else if (!is_manner(p, k) &&
 			 !class_in(p, k, 1U << CLOSED_BE | 1U << CLOSED_AUXILIARY | 1U << CLOSED_HAVE))
@@ -182,16 +186,19 @@ static void take_ranks(struct motion_said *m, struct parse *p, char *taken)
 		add(m, p, &r, m->events[k].phrase, 0);
 	}
 	for (int i = 0; i < p->word_count; i++) {
-		if (taken[i] || !motion_row_find(p, i, p->word_count, 'a', &r))
+		if (taken[i] || (!motion_row_find(p, i, p->word_count, 'a', 0, &r) &&
+					(!events || !motion_row_find(p, i, p->word_count, 'o', 0, &r))))
 			continue;
-		const int is_alone = r.kind == MOTION_FASTEST || r.kind == MOTION_SLOWEST;
 		const int is_order = r.kind == MOTION_FIRST || r.kind == MOTION_LAST;
 		const int has = m->n && m->events[m->n - 1].kind >= MOTION_FIRST;
-		if ((!events && !is_alone) || (is_order && has) || parse_word_is(p, r.end, "of|from"))
+		if ((is_order && has) || parse_word_is(p, r.end, "of|from"))
 			continue;
 		add(m, p, &r, events ? m->events[events - 1].phrase : whose(p, i, r.end), 0);
 		memset(taken + i, 1, (size_t)(r.end - i));
 	}
+	for (int k = 0; k < events && m->n > events; k++) /* "starts first": it need not have been at rest */
+		if (m->events[k].kind == MOTION_STARTS || m->events[k].kind == MOTION_STOPS)
+			m->events[k].kind = MOTION_MOVES;
 }
 
 /* What stands before the first verb is what moves, where the parse has it as something else: "the ball
@@ -213,6 +220,43 @@ static void take_subject(const struct motion_said *m, struct parse *p, int verb)
 	p->phrases[k] = was;
 }
 
+/* The word behind directions, and behind "the table" that they may be of: "to the left side of the table". */
+static int behind_table(const struct parse *p, const struct motion_row *r)
+{
+	int at = r->end + (!r->has_other && parse_word_is(p, r->end, "of"));
+
+	while (class_in(p, at, 1U << CLOSED_DETERMINER))
+		at++;
+	return parse_word_is(p, at, "table|tabletop|desk|ground|floor|surface|scene|picture") ? at + 1
+											      : r->end;
+}
+
+/* Whether directions say more than their verb: not "rolls away", "falls onto the table". */
+static int says_way(const struct motion_row *r, enum motion_kind verb, int behind)
+{
+	return r->kind != MOTION_TIME && (!r->has_other || behind == r->end) &&
+	       (r->kind != MOTION_AWAY || r->has_other || verb == MOTION_MOVES);
+}
+
+/* "At rest and then moves": it starts; "moves and then rests": it stops. */
+static void join_rests(struct motion_said *m)
+{
+	int rest = 0, n = 0;
+
+	while (rest < m->n && (m->events[rest].kind != MOTION_STILL || m->events[rest].negated))
+		rest++;
+	for (int k = 0; k < m->n && m->n > 1 && rest < m->n; k++) {
+		struct motion_event *v = &m->events[k];
+		if (k == rest && !n && k + 1 == m->n)
+			return;
+		if (v->phrase == m->events[rest].phrase && v->kind <= MOTION_PAUSES && !v->negated)
+			v->kind = k < rest ? MOTION_STOPS : k > rest ? MOTION_STARTS : v->kind;
+		if (k != rest)
+			m->events[n++] = *v;
+	}
+	m->n = n ? n : m->n;
+}
+
 int motion_said_take(struct motion_said *m, struct parse *p)
 {
 	char taken[TOKENS_MOST] = {0};
@@ -226,9 +270,11 @@ int motion_said_take(struct motion_said *m, struct parse *p)
 		add(m, p, &verb, 0, negated);
 		for (at = verb.end; at < p->word_count;) {
 			if (find_row(p, at, p->word_count, 'd', &r) &&
-				(r.has_other || !parse_word_is(p, r.end, "of|from"))) {
-				add(m, p, &r, 0, negated);
-				at = r.end;
+				(r.has_other || behind_table(p, &r) > r.end ||
+					!parse_word_is(p, r.end, "of|from"))) {
+				at = behind_table(p, &r);
+				if (says_way(&r, verb.kind, at))
+					add(m, p, &r, 0, negated);
 			} else if (is_manner(p, at)) {
 				at++;
 			} else {
@@ -242,6 +288,7 @@ int motion_said_take(struct motion_said *m, struct parse *p)
 		for (int k = first - 1; is_manner(p, k); k--)
 			taken[k] = 1;
 	}
+	join_rests(m);
 	take_ranks(m, p, taken);
 	if (!m->n)
 		return 0;
@@ -272,6 +319,14 @@ static int begin_of(const struct parse *p)
 	return i + 1 + parse_word_is(p, i + 1, "there");
 }
 
+/* Whether words for a thing begin at a word. */
+static int is_thing_at(const struct parse *p, int word)
+{
+	while (class_in(p, word, 1U << CLOSED_DETERMINER | 1U << CLOSED_ATTRIBUTE | 1U << CLOSED_SIZE))
+		word++;
+	return closed_class_of(p, word) == CLOSED_CLASSES;
+}
+
 int motion_said_cut(struct motion_cut *c, const struct parse *p, const char *text)
 {
 	struct motion_row r, verb;
@@ -281,12 +336,16 @@ int motion_said_cut(struct motion_cut *c, const struct parse *p, const char *tex
 		c->begin = 0;
 	for (int i = c->begin; i < p->word_count && c->when == MOTION_NONE; i++) {
 		int stop;
-		if (!motion_row_find(p, i, p->word_count, 'w', &r) || r.end >= p->word_count ||
+		if (!motion_row_find(p, i, p->word_count, 'w', 0, &r) || r.end >= p->word_count ||
 			(parse_word_is(p, i, "as") && class_in(p, i - 1, 1U << CLOSED_SIZE)))
 			continue;
 		for (stop = r.end + 1; stop < p->word_count && !is_pause(p, text, stop); stop++)
 			;
-		if (find_verb(p, r.end, stop, &verb) < 0)
+		/* "after the box": after it moves */
+		const int is_thing = r.kind != MOTION_WHILE || r.end > i + 2;
+		if (find_verb(p, r.end, stop, &verb) < 0 &&
+			(!is_thing || find_verb(p, c->begin, i, &verb) < 0 || !is_thing_at(p, r.end) ||
+				motion_row_find(p, i, p->word_count, 'o', 0, &verb)))
 			continue;
 		if (i == c->begin && stop == p->word_count)
 			stop = verb.end;

@@ -38,6 +38,7 @@ enum motion_kind {
 	MOTION_WHILE, /* when */
 	MOTION_BEFORE,
 	MOTION_AFTER,
+	MOTION_TIME, /* "all the time": nothing else */
 	MOTION_KINDS,
 	MOTION_NONE = MOTION_KINDS
 };
