@@ -28,11 +28,25 @@ static int is_noun(const struct parse *p, int at, const struct motion_row *r)
 				1U << CLOSED_ADVERB) &&
 		!parse_word_is(p, at - 1, "being|gets|got|and|then|later"))
 		return 1;
+	const int is_plain = !token_ends(word, "ing", 2) && !token_ends(word, "ed", 2);
+	if (class_in(p, at - 1, 1U << CLOSED_PRONOUN) ||
+		parse_word_is(p, at - 1, "i|let|'m|m|'re|re|'ll|please|ok|okay") ||
+		(is_plain && ((at == 0 && !token_ends(word, "s", 2)) ||
+				     (class_in(p, at, 1U << CLOSED_REQUEST) &&
+					     !class_in(p, at - 1,
+						     1U << CLOSED_AUXILIARY | 1U << CLOSED_RELATIVE)))))
+		return !parse_word_is(
+			p, at - 1, "it|they|he|she|itself"); /* "pass me the mug", "i go for the mug" */
+	if (parse_word_is(p, at, "wait|pause|stop|rest|halt") &&
+		!class_in(p, at - 1,
+			1U << CLOSED_AUXILIARY | 1U << CLOSED_RELATIVE | 1U << CLOSED_CONJUNCTION |
+				1U << CLOSED_NEGATION))
+		return 1; /* "no wait, the mug" */
 	if (parse_word_is(p, at, "still") && r->end == at + 1)
 		return r->end < p->word_count && !class_in(p, at - 1, before) &&
 		       !parse_word_is(p, r->end, "while|when|before|after|until|and|one|ones|thing");
-	return r->kind != MOTION_STILL && !token_ends(word, "ing", 2) && !token_ends(word, "ed", 2) &&
-	       r->end == at + 1 && class_in(p, at - 1, before) && !parse_word_is(p, at - 1, "this|that");
+	return r->kind != MOTION_STILL && is_plain && r->end == at + 1 && class_in(p, at - 1, before) &&
+	       !parse_word_is(p, at - 1, "this|that");
 }
 
 /* In what way it moves, and nothing else. */
