@@ -32,7 +32,7 @@ static int is_form(const char *word, const char *verb, size_t n)
 		return 1;
 	if (strncmp(word, verb, n) != 0 || strlen(word) > n + 4)
 		return 0;
-	strcpy(tail, word + n);
+	memcpy(tail, word + n, strlen(word + n) + 1);
 	if (*tail == last && strlen(tail) > 2) /* doubled */
 		memmove(tail, tail + 1, strlen(tail));
 	return !*tail || list_has("s|es|d|ed|ing", tail);
