@@ -38,9 +38,7 @@ static int is_noun(const struct parse *p, int at, const struct motion_row *r)
 		return !parse_word_is(
 			p, at - 1, "it|they|he|she|itself"); /* "pass me the mug", "i go for the mug" */
 	if (parse_word_is(p, at, "wait|pause|stop|rest|halt") &&
-		!class_in(p, at - 1,
-			1U << CLOSED_AUXILIARY | 1U << CLOSED_RELATIVE | 1U << CLOSED_CONJUNCTION |
-				1U << CLOSED_NEGATION))
+		(at == 0 || parse_word_is(p, at - 1, "no|oh|hey|so|now|well|um|er|erm|but")))
 		return 1; /* "no wait, the mug" */
 	if (parse_word_is(p, at, "still") && r->end == at + 1)
 		return r->end < p->word_count && !class_in(p, at - 1, before) &&

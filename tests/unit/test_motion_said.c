@@ -74,6 +74,7 @@ static void test_when(void)
 		{"the ball after it is lifted", "the ball ", "it is lifted", MOTION_AFTER},
 		{"does the cup fall?", "the cup fall?", "", MOTION_NONE},
 		{"when does the cup fall?", "the cup fall?", "", MOTION_NONE},
+		{"when does the cup stop?", "the cup stop?", "", MOTION_NONE},
 		{"the cup that falls", "the cup that falls", "", MOTION_NONE},
 		{"the ball before the box", "the ball before the box", "", MOTION_NONE}};
 
