@@ -316,6 +316,35 @@ static void check_sure(struct answer_told *t, struct asking_answer *found)
 	ask_back(t, found, found->unclear[0], found->unclear[1]);
 }
 
+/* Whether t->asked is about time, and of what kind it is where the scene or the question is not. */
+static void take_motion(struct answer_told *t, struct asking_answer *found)
+{
+	static const char *const unknown[QUESTION_KINDS] = {[QUESTION_WHEN] = "when that is, is not known",
+		[QUESTION_THEN] = "where things are at another time, --time tells",
+		[QUESTION_SPEED] = "how fast things are, is not told"};
+	const int is_moving = t->asking->model.tracks.times > 0;
+
+	if (t->asked.kind == QUESTION_WHICH && found->is_motion && question_is_yes_or_no(t->understood)) {
+		t->asked.kind = QUESTION_THERE;
+		t->is_yes = found->count > 0;
+	}
+	if (t->asked.kind == QUESTION_THEN && !is_moving)
+		t->asked.kind = QUESTION_WHICH;
+	if (!unknown[t->asked.kind])
+		return;
+	if (t->asked.kind != QUESTION_WHEN || !found->is_motion) {
+		found->count = 0;
+		snprintf(found->reason, sizeof found->reason, "%s", unknown[t->asked.kind]);
+		answering_say(t, "not known");
+	}
+	if (!found->count)
+		return;
+	if (found->motion == MOTION_STARTS || found->motion == MOTION_STOPS)
+		answering_say(t, "at %.4g", found->when[found->motion == MOTION_STOPS]);
+	else
+		answering_say(t, "from %.4g to %.4g", found->when[0], found->when[1]);
+}
+
 int kinds_answer(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e)
 {
@@ -334,6 +363,7 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 		drop_at_nothing(t, found);
 	}
 	t->is_yes |= t->asked.kind == QUESTION_THERE && found->count && (int)found->count >= t->asked.least;
+	take_motion(t, found);
 	if (kind == QUESTION_NUMBER)
 		say_number(t, found->count);
 	if (kind >= QUESTION_HEIGHT && kind <= QUESTION_SIZE)

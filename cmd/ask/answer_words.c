@@ -72,7 +72,7 @@ static void put_box(const struct answer_told *t, size_t object, FILE *out)
 /* "; from 0.3 to 0.6" */
 static void put_when(const struct answer_told *t, FILE *out)
 {
-	if (t->answer->is_motion && t->answer->count)
+	if (t->answer->is_motion && t->answer->count && t->asked.kind != QUESTION_WHEN)
 		fprintf(out, "; from %.4g to %.4g", t->answer->when[0], t->answer->when[1]);
 }
 

@@ -291,6 +291,7 @@ static int choose_answer(
 	w->answer->there = choice.there;
 	w->answer->is_by_purpose = choice.is_by_purpose;
 	w->answer->is_motion = choice.is_motion;
+	w->answer->motion = choice.motion;
 	memcpy(w->answer->when, choice.when, sizeof choice.when);
 	for (size_t o = 0; o < objects; o++)
 		w->answer->probability[o] = choice.there * (double)probability[o];

@@ -72,11 +72,12 @@ struct asking_answer {
 	size_t unclear[2];     /* two things of which the question's one anchor may be either; ASKING_NONE */
 	int is_anchor_unknown; /* nothing here is known as what a place is told by */
 	int is_motion;	       /* it says something of motion: */
-	double when[2];	       /* from when to when things move so */
-	double there;	       /* P that the question means anything that is here */
-	int is_by_purpose;     /* what the thing is for told */
-	int is_guess;	       /* it would be refused but for is_always */
-	double *probability;   /* (objects) that each is meant, or one of those meant */
+	enum motion_kind motion;     /* how the thing moves; MOTION_NONE: not said */
+	double when[2];		     /* from when to when things move so */
+	double there;		     /* P that the question means anything that is here */
+	int is_by_purpose;	     /* what the thing is for told */
+	int is_guess;		     /* it would be refused but for is_always */
+	double *probability;	     /* (objects) that each is meant, or one of those meant */
 	char reason[EXPLAIN_REASON]; /* of a refusal */
 	double (*centres)[3];	     /* (objects) to the right, away and up, as seen from the viewpoint */
 	double *holds; /* (objects) the least that any part of the question but its noun gives the object, in

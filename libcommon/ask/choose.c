@@ -211,6 +211,7 @@ static int choose_parsed(struct chooser *c, const struct choose_sentence *from, 
 		choose_motion(&c->meaning, c->scene, &c->parser, from, own, e))
 		return -1;
 	to->is_motion = c->scene->tracks && (c->motion.said.n || c->motion.gone != MOTION_NONE);
+	to->motion = to->is_motion && c->motion.said.n ? c->motion.said.events[0].kind : MOTION_NONE;
 	const int is_all = from->is_all && own->phrases && own->phrases[0].count == PARSE_ONE;
 	if (is_all) {
 		own->phrases[0].count = PARSE_ALL;

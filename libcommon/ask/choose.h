@@ -15,6 +15,7 @@
 #include "base/err.h"
 #include "base/list.h"
 #include "geom/camera.h"
+#include "lang/motion_said.h"
 #include "lang/parser.h"
 #include "lift/lifted_model.h"
 #include "splat/splats.h"
@@ -61,11 +62,12 @@ struct choose_scene {
 };
 
 struct choice {
-	double there;	   /* P that the sentence means anything that was lifted */
-	int is_several;	   /* it may mean more than one object */
-	int is_by_purpose; /* what the thing is for told (CHOOSE_PURPOSE) */
-	int is_motion;	   /* it says something of motion (lang/motion_said.h), and: */
-	double when[2];	   /* from when to when what is chosen moves so */
+	double there;		 /* P that the sentence means anything that was lifted */
+	int is_several;		 /* it may mean more than one object */
+	int is_by_purpose;	 /* what the thing is for told (CHOOSE_PURPOSE) */
+	int is_motion;		 /* it says something of motion (lang/motion_said.h), and: */
+	enum motion_kind motion; /* of the target, first; MOTION_NONE */
+	double when[2];		 /* from when to when what is chosen moves so */
 };
 
 /* What is known of a sentence once it is judged, to explain it; good until the call returns. */

@@ -16,7 +16,8 @@ static const struct {
 };
 
 static const char *const names[QUESTION_KINDS] = {"which", "list", "number", "colour", "look", "distance",
-	"height", "width", "size", "compare", "more", "either", "there", "whether", "set"};
+	"height", "width", "size", "compare", "more", "either", "there", "whether", "set", "when", "then",
+	"speed"};
 
 static const char *const class_names[CLOSED_CLASSES] = {
 	[CLOSED_BE] = "be", [CLOSED_AUXILIARY] = "do", [CLOSED_PRONOUN] = "pronoun", [CLOSED_HAVE] = "have"};
@@ -345,6 +346,15 @@ static int has_word(const char *text, const char *words)
 int question_is_open(const char *text)
 {
 	return has_word(text, "what|whatever|something|anything|everything|ones|things");
+}
+
+int question_is_yes_or_no(const char *text)
+{
+	struct tokens t;
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	const int class = t.n ? tokens_class(&t, 0) : CLOSED_CLASSES;
+	return class == CLOSED_BE || class == CLOSED_AUXILIARY;
 }
 
 int question_is_half(const char *text)

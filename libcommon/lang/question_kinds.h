@@ -21,6 +21,9 @@ enum question_kind {
 	QUESTION_THERE,	   /* whether it is there */
 	QUESTION_WHETHER,  /* whether the first, which is there, is the second */
 	QUESTION_SET,	   /* what stands in a relation: one thing, or where that is in doubt all that do */
+	QUESTION_WHEN,	   /* when a thing moves */
+	QUESTION_THEN,	   /* where it is at the end, or was at the start */
+	QUESTION_SPEED,	   /* how fast it is */
 	QUESTION_KINDS
 };
 
@@ -51,6 +54,9 @@ int question_is_any(const char *phrase);
 /* Whether a text asks for whatever there is, "what can I drink from?", "the ones to read", and not for one.
  */
 int question_is_open(const char *text);
+
+/* Whether a text asks for yes or no: "does the mug fall?" */
+int question_is_yes_or_no(const char *text);
 
 /* Whether a text asks for a whole side of the scene: "on the left side". */
 int question_is_half(const char *text);

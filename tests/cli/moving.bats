@@ -220,3 +220,25 @@ answers() {
 	jq -c '[.view, .ref, .when]' when.jsonl | cmp - <(jq -c '[.view, .ref, .when]' moves/lifted/masks.jsonl)
 	"$BIN/gs-check" when.jsonl >check
 }
+
+# of KIND: the first such sentence of a thing whose name has no number.
+of() { jq -cn --arg kind "$1" 'first(inputs | select(.kind == $kind and (.object // "0" | test("[0-9]") | not)))' moves/moving.jsonl; }
+
+# asks QUESTION TEST: a question about the object of the sentence on standard input, $x, and what holds of the reply.
+asks() {
+	local x
+	x=$(cat)
+	"$BIN/refer-ask" -q --json --encoder encoder --scene moves/lifted/scene --model moves/lifted/model.safetensors moves "$(jq -r --arg q "$1" '.object as $o | $q | sub("X"; $o)' <<<"$x")" >reply || [ $? = 1 ]
+	jq --argjson x "$x" "$2" reply | grep -x true || { cat reply; false; }
+}
+
+@test "questions of motion: yes or no, and when; of what is not known of time, that" {
+	of motion-moves | asks "does the X move?" '.kind == "there" and .yes and .things[0].name == $x.object'
+	of motion-still | asks "does the X move?" '.yes == false and .reason != ""'
+	of motion-stops | asks "when does the X stop?" '.kind == "when" and (.value | ltrimstr("at ") | tonumber - $x.when[1] | fabs < 0.1)'
+	of motion-moves | asks "when does the X move?" '.value | startswith("from ")'
+	of motion-still | asks "when is the X red?" '.answered == false and .value == "not known"'
+	of motion-moves | asks "how fast is the X?" '.answered == false and .value == "not known"'
+	of motion-moves | asks "where is the X at the end?" '.answered == false and (.reason | contains("--time"))'
+	of motion-moves | asks "where is the X?" '.answered'
+}
