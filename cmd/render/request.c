@@ -130,7 +130,7 @@ int request_answer(struct request *r, const struct viewpoint *from, struct err *
 		!o->is_plain, r->parts, o->least, o->wants_parts, from, &r->memo};
 
 	responses_free(&r->responses);
-	if (anymodel_track(&r->model, &r->scene, e))
+	if (anymodel_follow(&r->model, &r->scene, e) || anymodel_track(&r->model, &r->scene, e))
 		return -1;
 	return anymodel_answer(&r->model, &ask, &r->responses, e);
 }

@@ -23,6 +23,7 @@ struct anymodel {
 	struct parser_weights weights; /* of the sentences' parser, for a lifted model: the default ones */
 	struct tracks tracks;	       /* of anymodel_track; no times: the scene is still */
 	struct extent *extents;	       /* (objects) of a lifted model, of anymodel_place; else NULL */
+	uint64_t *poses;	       /* (objects) what anymodel_follow found these by; NULL */
 };
 
 /* ERR_FORMAT where the file is malformed, or of another kind. */
@@ -35,6 +36,9 @@ int anymodel_check_scene(const struct anymodel *m, const char *model, const stru
 
 /* Where each lifted object is, in the frame of the splats: m->extents. Returns 0, or -1 with *e set. */
 int anymodel_place(struct anymodel *m, const struct scene *scene, struct err *e);
+/* The same where the scene has moved to another time: what rests is not looked for again. Of a scene that is
+ * still, nothing. */
+int anymodel_follow(struct anymodel *m, const struct scene *scene, struct err *e);
 /* Which way each goes, of a scene that moves, whatever time it is moved to: m->tracks. Likewise. */
 int anymodel_track(struct anymodel *m, const struct scene *scene, struct err *e);
 /* The boxes of an object in the world, means + offset, with the score `sure`; without names. */

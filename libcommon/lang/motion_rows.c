@@ -85,10 +85,11 @@ int motion_row_find(
 	const struct parse *p, int at, int end, char slot, int may_have_other, struct motion_row *r)
 {
 	*r = (struct motion_row){MOTION_NONE, at, 0};
-	for (const char *row = (const char *)motion_words_begin; *row; row += strcspn(row, "\n") + 1) {
-		const char *columns = row + strcspn(row, "\t");
-		const int has_other = row[strcspn(row, "\n") - 1] == 'B';
-		if (*row == '#' || columns[1] != slot || has_other > may_have_other)
+	for (const char *row = (const char *)motion_words_begin, *last; *row; row = last + 1) {
+		last = strchr(row, '\n');
+		const char *columns = memchr(row, '\t', (size_t)(last - row));
+		const int has_other = last[-1] == 'B';
+		if (!columns || columns[1] != slot || has_other > may_have_other)
 			continue;
 		const int to = match(p, at, end, columns + 3);
 		if (to > r->end)

@@ -41,7 +41,7 @@ void lifted_responses(const struct lifted *l, size_t object, float *responses)
 		responses[l->index[k]] = l->share[k] - cut;
 }
 
-static int find_extent(struct extent *to, const struct lifted *l, size_t object, const struct splats *s,
+int lifted_extent(struct extent *to, const struct lifted *l, size_t object, const struct splats *s,
 	const double up[3], struct err *e)
 {
 	const size_t first = (size_t)l->indptr[object], n = (size_t)l->indptr[object + 1] - first;
@@ -68,7 +68,7 @@ int lifted_extents(struct extent **extents, const struct lifted *l, const struct
 #pragma omp parallel for schedule(dynamic) reduction(| : bad)
 	for (size_t o = 0; o < (all ? l->objects : 0); o++) {
 		struct err ignored;
-		bad |= find_extent(&all[o], l, o, s, up, &ignored) != 0;
+		bad |= lifted_extent(&all[o], l, o, s, up, &ignored) != 0;
 	}
 	*extents = all;
 	if (!bad)

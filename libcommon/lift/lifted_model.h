@@ -63,5 +63,8 @@ void lifted_responses(const struct lifted *l, size_t object, float *responses);
  * the splats. Returns 0, or -1 with *e set. */
 int lifted_extents(struct extent **extents, const struct lifted *l, const struct splats *s,
 	const double up[3], struct err *e);
+/* Of one of them; nothing is freed. */
+int lifted_extent(struct extent *to, const struct lifted *l, size_t object, const struct splats *s,
+	const double up[3], struct err *e);
 /* Of O, or NULL. */
 void lifted_extents_free(struct extent *extents, size_t objects);
