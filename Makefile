@@ -246,7 +246,7 @@ test: packages ## set up, build, run every test; FILTER=text picks test files by
 	@$(MAKE) --no-print-directory check
 
 check: # the tests without installing anything
-	@$(MAKE) --no-print-directory $(PARALLEL) -s tools library units $(BUILD)/bench/bench_render
+	@$(MAKE) --no-print-directory $(PARALLEL) -s tools library units benches
 	@tests/run.sh $(BUILD) $(JOBS) "$(FILTER)"
 
 test-real: packages ## the whole method on real scenes: make test-real DATA=DIR

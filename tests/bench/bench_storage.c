@@ -98,8 +98,8 @@ static void make_problem(struct problem *p)
 static void respond(const struct problem *p, const struct model *m, float *out)
 {
 	struct rows rows = {0};
-	const struct respond_model answers = {
-		&m->layout, m->similarity, &rows, m->features, m->parameters, p->means, m->low, m->high};
+	const struct respond_model answers = {&m->layout, m->similarity, &rows, m->blend, m->features,
+		m->parameters, p->means, m->low, m->high};
 	struct err e;
 
 	if (model_rows(m, p->means, &rows, &e) ||

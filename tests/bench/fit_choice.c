@@ -112,7 +112,7 @@ static int read_cell(struct cell *c, const struct parser *parser, struct err *e)
 	if (!c->parses || !c->sentences || !c->choices || !c->probability || !c->chosen)
 		return -1;
 	c->is_meant = c->chosen + cells;
-	c->about = (struct choose_scene){&c->model, &c->scene.splats, &c->scene.cameras, parser, 1};
+	c->about = (struct choose_scene){&c->model, &c->scene.splats, &c->scene.cameras, parser, 1, NULL};
 	c->chooser = chooser_make(&c->about, CHOOSE_ALL, e);
 	if (!c->chooser)
 		return -1;
