@@ -1,7 +1,6 @@
 #include "cmd/run/anymodel.h"
 
 #include "base/file.h"
-#include "base/hash.h"
 #include "base/mem.h"
 #include "base/names.h"
 #include "cmd/text/text_query.h"
@@ -71,45 +70,22 @@ int anymodel_place(struct anymodel *m, const struct scene *scene, struct err *e)
 	return 0;
 }
 
-/* What changes of an object's Gaussians, as one number. */
-static uint64_t pose_of(const struct lifted *l, size_t object, const struct splats *s)
-{
-	uint64_t pose = 0;
-
-	for (int64_t k = l->indptr[object]; k < l->indptr[object + 1]; k++) {
-		const size_t i = (size_t)l->index[k];
-		pose = hash64(s->means + 3 * i, 3 * sizeof *s->means, pose);
-		pose = hash64(s->quats + 4 * i, 4 * sizeof *s->quats, pose);
-		pose = hash64(s->scales + 3 * i, 3 * sizeof *s->scales, pose);
-	}
-	return pose;
-}
-
 int anymodel_follow(struct anymodel *m, const struct scene *scene, struct err *e)
 {
-	const size_t objects = m->is_lifted && scene->motion.times ? m->lifted.objects : 0;
-	const int is_first = !m->poses;
+	const size_t objects = m->lifted.objects;
 	double up[3];
-	int bad = 0;
 
-	if (!objects)
+	if (!m->is_lifted || !scene->motion.times)
 		return 0;
-	if (anymodel_place(m, scene, e) ||
-		(is_first && !(m->poses = mem_alloc(objects, sizeof *m->poses, "objects", e))))
-		return -1;
-	cameras_up(&scene->cameras, up);
-#pragma omp parallel for schedule(dynamic) reduction(| : bad)
-	for (size_t o = 0; o < objects; o++) {
-		const uint64_t pose = pose_of(&m->lifted, o, &scene->splats);
-		struct err ignored;
-		if (!is_first && pose != m->poses[o]) {
-			extent_free(&m->extents[o]);
-			bad |= lifted_extent(&m->extents[o], &m->lifted, o, &scene->splats, up, &ignored) !=
-			       0;
-		}
-		m->poses[o] = pose;
+	if (!m->poses) {
+		lifted_extents_free(m->extents, objects);
+		m->lifted.extents = m->extents = mem_zalloc(objects, sizeof *m->extents, "objects", e);
+		m->poses = mem_zalloc(objects, sizeof *m->poses, "objects", e);
+		if (!m->extents || !m->poses)
+			return -1;
 	}
-	return bad ? err_set(e, ERR_SYSTEM, "objects: out of memory") : 0;
+	cameras_up(&scene->cameras, up);
+	return lifted_extents_again(m->extents, m->poses, &m->lifted, &scene->splats, up, e);
 }
 
 static int track_frames(struct anymodel *m, const struct scene *scene, struct splats *at, struct err *e)

@@ -1,5 +1,6 @@
 #include "lift/lifted_model.h"
 
+#include "base/hash.h"
 #include "base/mem.h"
 #include "base/names.h"
 
@@ -41,7 +42,7 @@ void lifted_responses(const struct lifted *l, size_t object, float *responses)
 		responses[l->index[k]] = l->share[k] - cut;
 }
 
-int lifted_extent(struct extent *to, const struct lifted *l, size_t object, const struct splats *s,
+static int find_extent(struct extent *to, const struct lifted *l, size_t object, const struct splats *s,
 	const double up[3], struct err *e)
 {
 	const size_t first = (size_t)l->indptr[object], n = (size_t)l->indptr[object + 1] - first;
@@ -59,23 +60,48 @@ int lifted_extent(struct extent *to, const struct lifted *l, size_t object, cons
 	return !ids || !responses || extent_find(to, s, ids, responses, count, up, e);
 }
 
+/* What changes of an object's Gaussians, as one number. */
+static uint64_t pose_of(const struct lifted *l, size_t object, const struct splats *s)
+{
+	uint64_t pose = 0;
+
+	for (int64_t k = l->indptr[object]; k < l->indptr[object + 1]; k++) {
+		const size_t i = (size_t)l->index[k];
+		pose = hash64(s->means + 3 * i, 3 * sizeof *s->means, pose);
+		pose = hash64(s->quats + 4 * i, 4 * sizeof *s->quats, pose);
+		pose = hash64(s->scales + 3 * i, 3 * sizeof *s->scales, pose);
+	}
+	return pose;
+}
+
+int lifted_extents_again(struct extent *extents, uint64_t *poses, const struct lifted *l,
+	const struct splats *s, const double up[3], struct err *e)
+{
+	int bad = 0;
+
+#pragma omp parallel for schedule(dynamic) reduction(| : bad)
+	for (size_t o = 0; o < l->objects; o++) {
+		const uint64_t pose = poses ? pose_of(l, o, s) : 0;
+		struct err ignored;
+		if (poses && pose == poses[o])
+			continue;
+		extent_free(&extents[o]);
+		bad |= find_extent(&extents[o], l, o, s, up, &ignored) != 0;
+		if (poses)
+			poses[o] = pose;
+	}
+	return bad ? err_set(e, ERR_SYSTEM, "objects: out of memory") : 0;
+}
+
 int lifted_extents(struct extent **extents, const struct lifted *l, const struct splats *s,
 	const double up[3], struct err *e)
 {
-	struct extent *all = mem_zalloc(l->objects, sizeof *all, "objects", e);
-	int bad = !all;
-
-#pragma omp parallel for schedule(dynamic) reduction(| : bad)
-	for (size_t o = 0; o < (all ? l->objects : 0); o++) {
-		struct err ignored;
-		bad |= lifted_extent(&all[o], l, o, s, up, &ignored) != 0;
-	}
-	*extents = all;
-	if (!bad)
+	*extents = mem_zalloc(l->objects, sizeof **extents, "objects", e);
+	if (*extents && !lifted_extents_again(*extents, NULL, l, s, up, e))
 		return 0;
-	lifted_extents_free(all, l->objects);
+	lifted_extents_free(*extents, l->objects);
 	*extents = NULL;
-	return err_set(e, ERR_SYSTEM, "objects: out of memory");
+	return -1;
 }
 
 void lifted_extents_free(struct extent *extents, size_t objects)

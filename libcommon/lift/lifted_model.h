@@ -63,8 +63,9 @@ void lifted_responses(const struct lifted *l, size_t object, float *responses);
  * the splats. Returns 0, or -1 with *e set. */
 int lifted_extents(struct extent **extents, const struct lifted *l, const struct splats *s,
 	const double up[3], struct err *e);
-/* Of one of them; nothing is freed. */
-int lifted_extent(struct extent *to, const struct lifted *l, size_t object, const struct splats *s,
-	const double up[3], struct err *e);
+/* The same again after Gaussians have moved: of objects whose poses (O) are those of before, nothing. At
+ * first extents and poses are zero; poses NULL: all are found. */
+int lifted_extents_again(struct extent *extents, uint64_t *poses, const struct lifted *l,
+	const struct splats *s, const double up[3], struct err *e);
 /* Of O, or NULL. */
 void lifted_extents_free(struct extent *extents, size_t objects);

@@ -3,6 +3,7 @@
 
 setup() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}
+	load differ
 	cd "$BATS_TEST_TMPDIR"
 }
 
@@ -14,15 +15,6 @@ small() {
 # One hash of every name and byte in a folder.
 hash_of() {
 	(cd "$1" && find . -type f | LC_ALL=C sort | xargs sha256sum) | sha256sum
-}
-
-# Both files are there, and not the same.
-differ() {
-	[ -s "$1" ] && [ -s "$2" ] || return 1
-	if cmp -s "$1" "$2"; then
-		echo "$1 and $2 are the same"
-		return 1
-	fi
 }
 
 @test "without -o: exit 2" {
