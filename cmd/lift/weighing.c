@@ -4,7 +4,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "formats/scene/weights.h"
-#include "splat/prune.h"
+#include "splat/weigh_packed.h"
 
 #include <math.h>
 #include <omp.h>
@@ -49,15 +49,13 @@ static int prepare(struct room *room, const struct splats *s, const struct camer
 	return room->view ? 0 : -1;
 }
 
-static int render(struct room *room, size_t pixels, const struct weighing_options *o, struct err *e)
+static int render(struct room *room, const struct weighing_options *o, struct err *e)
 {
-	const double least = o->precision == PRECISION_U8 ? WEIGHTS_U8_LEAST : 0;
+	const struct render_limits limits = {
+		o->tolerance, o->precision == PRECISION_U8 ? WEIGHTS_U8_LEAST : 0};
 
-	if (render_weights_again(room->view, &room->rendered, e))
-		return -1;
-	if (o->tolerance <= 0 && least <= 0)
-		return 0;
-	return prune_weights(&room->rendered, pixels, o->tolerance, least, room->dropped, e);
+	return o->is_packed ? weigh_packed(&room->packed, room->view, &limits, room->dropped, e)
+			    : render_weights_within(room->view, &limits, &room->rendered, room->dropped, e);
 }
 
 /* Views that show nothing are right where a camera looks away; all of them are a mistake: no weights stay. */
@@ -111,10 +109,7 @@ static int weigh_view(void *context, int worker, size_t at, struct err *e)
 	struct weighed_packed *packed = &room->packed;
 	const struct render_weights *rendered = &room->rendered;
 	int bad = scene_splats_at(&room->moved, of->scene, full, e) ||
-		  prepare(room, &room->moved, &camera, e) ||
-		  (o->is_packed ? weigh_packed(packed, room->view, &camera, of->scene->splats.n, o->tolerance,
-					  room->dropped, e)
-				: render(room, pixels, o, e));
+		  prepare(room, &room->moved, &camera, e) || render(room, o, e);
 	scene_splats_release(&room->moved, of->scene);
 	done->ms = 1e3 * (omp_get_wtime() - start);
 	const struct weights w = {.width = done->width,
@@ -131,7 +126,7 @@ static int weigh_view(void *context, int worker, size_t at, struct err *e)
 	if (!bad) {
 		done->weights = o->is_packed ? (double)packed->weights : (double)rendered->indptr[pixels];
 		const size_t covered =
-			o->is_packed ? packed->covered : weighing_cover(rendered->transmittance, pixels);
+			o->is_packed ? packed->covered : weigh_covered(rendered->transmittance, pixels);
 		room->covered = fmax(room->covered, (double)covered / (double)pixels);
 		bad = weights_write(&w, o->folder, full->name, of->text, e);
 	}

@@ -34,7 +34,7 @@ struct weights {
 					    weight; else NULL */
 };
 
-/* Weights below half of 1/255 round to 0 as u8: prune_weights leaves them out as dropped. */
+/* Weights below half of 1/255 round to 0 as u8: render_weights_within leaves them out as dropped. */
 #define WEIGHTS_U8_LEAST (0.5 / 255)
 
 /* Maps and checks DIR/VIEW.safetensors: indptr rises from 0 to nnz, ids in [0,gaussians), weights finite in

@@ -40,6 +40,7 @@ typedef __mmask16 vecm;
 #else
 typedef vecni vecm;
 #endif
+typedef double vecd __attribute__((vector_size(4 * VEC_LANES))); /* of half as many lanes */
 
 VEC_INLINE vecn vec_splat(float x)
 {
@@ -181,6 +182,29 @@ VEC_INLINE uint32_t vec_bits(vecm mask)
 	for (int l = 0; l < VEC_LANES; l++)
 		bits |= (uint32_t)(mask[l] & 1) << l;
 	return bits;
+#endif
+}
+
+/* The first half of the lanes in double, and the other. */
+VEC_INLINE vecd vec_low(vecn x)
+{
+#if VEC_LANES == 16
+	return (vecd)_mm512_cvtps_pd(_mm512_castps512_ps256((__m512)x));
+#elif VEC_LANES == 8
+	return (vecd)_mm256_cvtps_pd(_mm256_castps256_ps128((__m256)x));
+#else
+	return (vecd){(double)x[0], (double)x[1]};
+#endif
+}
+
+VEC_INLINE vecd vec_high(vecn x)
+{
+#if VEC_LANES == 16
+	return (vecd)_mm512_cvtps_pd(_mm512_extractf32x8_ps((__m512)x, 1));
+#elif VEC_LANES == 8
+	return (vecd)_mm256_cvtps_pd(_mm256_extractf128_ps((__m256)x, 1));
+#else
+	return (vecd){(double)x[2], (double)x[3]};
 #endif
 }
 

@@ -28,24 +28,25 @@ struct blend_tile {
 	uint32_t live;				/* bit b: some pixel of block b has not ended */
 };
 
-/* Weights in the order they are made: one record is a Gaussian's in one block of a tile. */
-struct blend_record {
-	int32_t index;
-	uint16_t block;
-	uint16_t lanes; /* bit l: pixel l of the block has a weight */
+/* One Gaussian in one tile. */
+struct blend_splat {
+	float u, v;	     /* at the tile's centre */
+	float l11, l21, l22; /* what they change by from there, a pixel */
+	float log_opacity;
 };
 
-struct blend_records {
-	struct blend_record *items;
-	size_t count, capacity;
-	float *weights; /* of all records in order, of each record by rising lane */
-	size_t weight_count, weight_capacity;
+struct blend_chunk {
+	struct blend_splat splats[BLEND_CHUNK];
+	uint16_t blocks[BLEND_CHUNK] __attribute__((aligned(64))); /* bit b: it may meet block b */
 };
 
-/* The room that a chunk may need: weights are stored by whole blocks. */
-enum {
-	BLEND_RECORD_ROOM = BLEND_CHUNK * BLEND_BLOCKS,
-	BLEND_WEIGHT_ROOM = BLEND_CHUNK * TILE_PIXELS + BLEND_LANES
+/* The weights of one block: a row for each Gaussian that has any, front to back; 0 where it has none. */
+enum { BLEND_ROWS_MORE = 4 }; /* rows that there is room for behind the last */
+struct blend_rows {
+	float (*weights)[BLEND_LANES]; /* (n + BLEND_ROWS_MORE) aligned to 64 bytes */
+	uint32_t *places;	       /* (n + 1) where they stand in the tile's list */
+	uint16_t *lanes;	       /* (n + 1) bit l: lane l has a weight */
+	size_t n;
 };
 
 /* Where the arrays of blend_tile hold the pixel at column x and row y of the tile. */

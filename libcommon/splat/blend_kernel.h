@@ -16,18 +16,6 @@ static const float blend_x[BLEND_LANES] __attribute__((aligned(64))) = {-1.5f, -
 static const float blend_y[BLEND_LANES] __attribute__((aligned(64))) = {-1.5f, -1.5f, -1.5f, -1.5f, -0.5f,
 	-0.5f, -0.5f, -0.5f, 0.5f, 0.5f, 0.5f, 0.5f, 1.5f, 1.5f, 1.5f, 1.5f};
 
-/* One Gaussian in one tile. */
-struct blend_splat {
-	float u, v;	     /* at the tile's centre */
-	float l11, l21, l22; /* what they change by from there, a pixel */
-	float log_opacity;
-};
-
-struct blend_chunk {
-	struct blend_splat splats[BLEND_CHUNK];
-	uint16_t blocks[BLEND_CHUNK] __attribute__((aligned(64))); /* bit b: it may meet block b */
-};
-
 /* A bit for each block that the ellipse a >= 1/255 may meet. */
 VEC_INLINE uint32_t blend_blocks(const struct blend_splat *s)
 {
@@ -224,78 +212,79 @@ __attribute__((unused)) static void blend_values(struct blend_tile *t, const str
 		blend_channels(t, p, list, n, values, channels);
 }
 
-/* Stores the lanes of w that `lanes` names side by side; may write VEC_LANES floats. */
-VEC_INLINE void blend_pack(float *out, vecn w, uint32_t lanes)
-{
-#if VEC_LANES == 16
-	_mm512_storeu_ps(out, _mm512_maskz_compress_ps((__mmask16)lanes, (__m512)w));
-#else
-	for (; lanes; lanes &= lanes - 1)
-		*out++ = w[__builtin_ctz(lanes)];
-#endif
-}
-
-/* Counts the weights of the Gaussians of `column` in block b, and records them where records are wanted. */
-VEC_INLINE void blend_block_weights(struct blend_tile *t, const struct blend_chunk *chunk, uint64_t column,
-	int b, const uint32_t *list, struct blend_records *records)
+/* Counts the weights of the Gaussians of `column` in block b. */
+VEC_INLINE void blend_block_counts(
+	struct blend_tile *t, const struct blend_chunk *chunk, uint64_t column, int b)
 {
 	struct blend_block block;
 
 	blend_load(&block, t, b);
-	for (; column; column &= column - 1) {
-		int k = __builtin_ctzll(column);
-		uint32_t all = 0;
-		for (int i = 0; i < BLEND_PARTS; i++) {
-			vecn w = blend_part(&block, &chunk->splats[k], i);
-			vecm has = vec_lt(vec_splat(0), w);
-			vec_count(t->count + b * BLEND_LANES + i * VEC_LANES, has);
-			if (!records)
-				continue;
-			uint32_t lanes = vec_bits(has);
-			blend_pack(records->weights + records->weight_count, w, lanes);
-			records->weight_count += (size_t)__builtin_popcount(lanes);
-			all |= lanes << (i * VEC_LANES);
-		}
-		if (!records)
-			continue;
-		records->items[records->count] =
-			(struct blend_record){(int32_t)list[k], (uint16_t)b, (uint16_t)all};
-		records->count += all != 0;
-	}
+	for (; column; column &= column - 1)
+		for (int i = 0; i < BLEND_PARTS; i++)
+			vec_count(t->count + b * BLEND_LANES + i * VEC_LANES,
+				vec_lt(vec_splat(0),
+					blend_part(&block, &chunk->splats[__builtin_ctzll(column)], i)));
 	blend_store(&block, t, b);
 }
 
-VEC_INLINE size_t blend_each(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
-	struct blend_records *records)
+__attribute__((unused)) static void blend_counts(
+	struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n)
 {
 	struct blend_chunk chunk;
 
 	blend_fetch(p, list, blend_chunk_size(n), NULL, 0);
 	for (size_t at = 0; at < n && t->live; at += BLEND_CHUNK) {
 		size_t now = blend_chunk_size(n - at), next = at + now;
-		if (records && (records->capacity - records->count < BLEND_RECORD_ROOM ||
-				       records->weight_capacity - records->weight_count < BLEND_WEIGHT_ROOM))
-			return at;
 		blend_fetch(p, list + next, blend_chunk_size(n - next), NULL, 0);
 		blend_chunk_make(&chunk, t, p, list + at, now);
 		for (uint32_t live = t->live; live; live &= live - 1) {
 			int b = __builtin_ctz(live);
 			uint64_t column = blend_column(&chunk, b);
 			if (column)
-				blend_block_weights(t, &chunk, column, b, list + at, records);
+				blend_block_counts(t, &chunk, column, b);
 		}
 	}
-	return n;
 }
 
-__attribute__((unused)) static size_t blend_weights(struct blend_tile *t, const struct projected *p,
-	const uint32_t *list, size_t n, struct blend_records *records)
+/* Blends the Gaussians of `column`, which stand in the list from `at` on, into rows. */
+VEC_INLINE void blend_column_rows(struct blend_block *block, const struct blend_chunk *chunk, uint64_t column,
+	size_t at, struct blend_rows *rows)
 {
-	return blend_each(t, p, list, n, records);
+	for (; column; column &= column - 1) {
+		int k = __builtin_ctzll(column);
+		uint32_t lanes = 0;
+		for (int i = 0; i < BLEND_PARTS; i++) {
+			vecn w = blend_part(block, &chunk->splats[k], i);
+			vec_store(rows->weights[rows->n] + i * VEC_LANES, w);
+			lanes |= vec_bits(vec_lt(vec_splat(0), w)) << (i * VEC_LANES);
+		}
+		rows->places[rows->n] = (uint32_t)(at + (size_t)k);
+		rows->lanes[rows->n] = (uint16_t)lanes;
+		rows->n += lanes != 0;
+	}
 }
 
-__attribute__((unused)) static void blend_counts(
-	struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n)
+__attribute__((unused)) static void blend_rows(struct blend_tile *t, const struct projected *p,
+	const uint32_t *list, size_t n, int b, struct blend_chunk *chunks, size_t *made,
+	struct blend_rows *rows)
 {
-	blend_each(t, p, list, n, NULL);
+	struct blend_block block;
+	size_t at = 0;
+
+	rows->n = 0;
+	for (; at < n && t->live >> b & 1; at += BLEND_CHUNK) {
+		struct blend_chunk *chunk = &chunks[at / BLEND_CHUNK];
+		size_t now = blend_chunk_size(n - at), next = at + now;
+		if (at / BLEND_CHUNK == *made) {
+			blend_fetch(p, list + next, blend_chunk_size(n - next), NULL, 0);
+			blend_chunk_make(chunk, t, p, list + at, now);
+			++*made;
+		}
+		uint64_t column = blend_column(chunk, b);
+		if (!column)
+			continue;
+		blend_load(&block, t, b);
+		blend_column_rows(&block, chunk, column, at, rows);
+		blend_store(&block, t, b);
+	}
 }

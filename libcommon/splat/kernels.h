@@ -17,10 +17,16 @@ struct kernels {
 		const float *values, int channels);
 	/* Counts the weights of each pixel. */
 	void (*counts)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n);
-	/* Counts and records them, as far as the records have room. Returns how many of the n are done; n
-	 * also when every pixel has ended. */
-	size_t (*weights)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n,
-		struct blend_records *records);
+	/* The weights of block b alone, which ends it. The tile's list is kept in chunks (n/BLEND_CHUNK,
+	 * rounded up) as far as any block needed it, *made of them; rows have room for n. */
+	void (*rows)(struct blend_tile *t, const struct projected *p, const uint32_t *list, size_t n, int b,
+		struct blend_chunk *chunks, size_t *made, struct blend_rows *rows);
+	/* Puts 0 in place of the smallest weights of each pixel (of equal ones the farther) while what is out
+	 * is at most `tolerance` of the pixel's sum, and then of those below `least`. Weights are at least
+	 * 2^-29, and at most 1 in sum. dropped[l] gets the sum of what is out of lane l, at most 1, which
+	 * bounds the error of a response: |dM| <= dropped max|m|. Rows that are empty then go. The same
+	 * on every instruction set, to the bit. */
+	void (*prune)(struct blend_rows *rows, double tolerance, float least, float dropped[BLEND_LANES]);
 };
 
 /* The kernels of a level; a level that the program was not built for gives plain ones. */

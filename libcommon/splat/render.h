@@ -56,15 +56,14 @@ struct render_weights {
 int render_weights(const struct render_view *v, struct render_weights *w, struct err *e);
 /* The same in the arrays that *w has from another view, or new ones where zeroed. Freed on failure. */
 int render_weights_again(const struct render_view *v, struct render_weights *w, struct err *e);
-/* The same of a part of the view's pixels alone, which then are the rows of the matrix: as large as the
- * processor's cache holds, all that is done with it costs less. x and y are multiples of RENDER_PART; so are
- * width and height, but at the view's edge. */
-enum { RENDER_PART = 16 };
-struct render_part {
-	int x, y, width, height; /* pixels */
+/* The same without the smallest weights of each pixel (of equal ones the farther), while what is out is at
+ * most `tolerance` of its sum, and then without those below `least`. dropped (P), or NULL, gets the sum of
+ * what is out, at most 1, which bounds the error of a response: |dM| <= dropped max|m|. */
+struct render_limits {
+	double tolerance, least;
 };
-int render_weights_part(
-	const struct render_view *v, const struct render_part *part, struct render_weights *w, struct err *e);
+int render_weights_within(const struct render_view *v, const struct render_limits *limits,
+	struct render_weights *w, float *dropped, struct err *e);
 void render_weights_free(struct render_weights *w);
 
 /* Blends `channels` values per Gaussian: out (channels,P) = sum_i w_i values[c][i], values (channels,N)

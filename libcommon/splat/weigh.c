@@ -1,167 +1,142 @@
 #include "base/mem.h"
 #include "base/threads.h"
 #include "splat/kernels.h"
-#include "splat/place.h"
 #include "splat/render.h"
 #include "splat/view.h"
+#include "splat/weigh_tile.h"
 
 #include <omp.h>
 
 /* The rows of a tile's pixels stand far apart in the matrix, and how long they are is known only when all
- * are blended. Blending twice, first for the lengths, is cheaper than keeping all records: they are half as
- * large as the matrix again. */
+ * are blended. Blending twice, first for the lengths, is cheaper than keeping all weights until then. */
 
-/* What the matrix is of: pixels from (x, y) on, all of the picture or a part of it. */
-struct frame {
-	int x, y;
-	struct tile_grid grid; /* as if the part were a picture */
-};
-
-/* Tile k of the frame: where it is in it, and of the picture. */
-static struct place place_in(const struct render_view *v, const struct frame *f, size_t k, size_t *tile)
-{
-	const struct place at = place_of_tile(&f->grid, k);
-
-	*tile = (size_t)((f->y + at.y) / TILE_SIZE) * (size_t)v->grid.columns +
-		(size_t)((f->x + at.x) / TILE_SIZE);
-	return at;
-}
-
-static const uint32_t *tile_list(const struct render_view *v, size_t k, size_t *n)
-{
-	*n = v->tiles.start[k + 1] - v->tiles.start[k];
-	return v->tiles.entries + v->tiles.start[k];
-}
-
-/* For each pixel of a tile how many weights it has (in indptr, one place on) and what is left. */
-static void count_tile(const struct render_view *v, const struct frame *f, size_t k, struct render_weights *w)
+/* For each pixel of tile k how many weights it has, in indptr, one place on. */
+static void count_tile(const struct render_view *v, size_t k, struct render_weights *w)
 {
 	struct blend_tile t __attribute__((aligned(64)));
-	size_t n, tile;
-	const struct place at = place_in(v, f, k, &tile);
-	const uint32_t *list = tile_list(v, tile, &n);
+	const struct place at = place_of_tile(&v->grid, k);
+	const uint32_t *list = v->tiles.entries + v->tiles.start[k];
 
-	place_fetch(&f->grid, at, w->transmittance);
-	blend_start(&t, f->x + at.x, f->y + at.y, at.columns, at.rows, 0);
-	kernels_of(v->level)->counts(&t, v->projected, list, n);
-	place_plane(&f->grid, at, t.transmittance, w->transmittance);
+	blend_start(&t, at.x, at.y, at.columns, at.rows, 0);
+	kernels_of(v->level)->counts(&t, v->projected, list, v->tiles.start[k + 1] - v->tiles.start[k]);
 	for (int y = 0; y < at.rows; y++)
 		for (int x = 0; x < at.columns; x++)
-			w->indptr[place_pixel(&f->grid, at, x, y) + 1] = t.count[blend_place(x, y)];
+			w->indptr[place_pixel(&v->grid, at, x, y) + 1] = t.count[blend_place(x, y)];
 }
 
-/* Distributes records over the rows of the matrix; next is where each pixel's goes on. */
-static void scatter(struct blend_records *records, int64_t *next, struct render_weights *w)
+/* Distributes a block's rows over those of the matrix; next (16) is where each pixel's goes on. */
+static void scatter(const struct weigh_tile *t, int64_t *next, struct render_weights *w)
 {
-	const float *weight = records->weights;
-
-	for (size_t i = 0; i < records->count; i++) {
-		struct blend_record one = records->items[i];
-		int64_t *block = next + one.block * BLEND_LANES;
-		for (unsigned left = one.lanes; left; left &= left - 1) {
-			int64_t place = block[__builtin_ctz(left)]++;
-			w->index[place] = one.index;
-			w->weight[place] = *weight++;
+	for (size_t k = 0; k < t->rows.n; k++) {
+		const float *row = t->rows.weights[k];
+		const int32_t index = (int32_t)t->list[t->rows.places[k]];
+		for (unsigned left = t->rows.lanes[k]; left; left &= left - 1) {
+			const int l = __builtin_ctz(left);
+			const int64_t place = next[l]++;
+			w->index[place] = index;
+			w->weight[place] = row[l];
 		}
 	}
-	records->count = records->weight_count = 0;
 }
 
-/* `records` has room for RECORD_CHUNKS chunks. */
-static void weigh_tile(const struct render_view *v, const struct frame *f, size_t k,
-	struct blend_records *records, struct render_weights *w)
+/* Fills the rows of a tile's pixels; -1 in place of the weights that were left out at their ends. */
+static void weigh_pixels(
+	struct weigh_tile *t, const struct render_limits *limits, struct render_weights *w, float *dropped)
 {
-	struct blend_tile t __attribute__((aligned(64)));
-	int64_t next[TILE_PIXELS];
-	size_t n, tile, done = 0;
-	const struct place at = place_in(v, f, k, &tile);
-	const uint32_t *list = tile_list(v, tile, &n);
+	const struct tile_grid *grid = &t->view->grid;
+	int64_t next[TILE_PIXELS] = {0};
 
-	for (int y = 0; y < at.rows; y++)
-		for (int x = 0; x < at.columns; x++)
-			next[blend_place(x, y)] = w->indptr[place_pixel(&f->grid, at, x, y)];
-	blend_start(&t, f->x + at.x, f->y + at.y, at.columns, at.rows, 0);
-	while (done < n) {
-		done += kernels_of(v->level)->weights(&t, v->projected, list + done, n - done, records);
-		scatter(records, next, w);
+	place_fetch(grid, t->at, w->transmittance);
+	for (int y = 0; y < t->at.rows; y++)
+		for (int x = 0; x < t->at.columns; x++)
+			next[blend_place(x, y)] = w->indptr[place_pixel(grid, t->at, x, y)];
+	for (int b = 0; b < BLEND_BLOCKS; b++) {
+		weigh_tile_block(t, b, limits);
+		scatter(t, next + b * BLEND_LANES, w);
+	}
+	for (int y = 0; y < t->at.rows; y++)
+		for (int x = 0; x < t->at.columns; x++) {
+			const int64_t end = w->indptr[place_pixel(grid, t->at, x, y) + 1];
+			for (int64_t k = next[blend_place(x, y)]; k < end; k++)
+				w->weight[k] = -1;
+		}
+	place_plane(grid, t->at, t->pixels.transmittance, w->transmittance);
+	if (dropped)
+		place_plane(grid, t->at, t->dropped, dropped);
+}
+
+/* Closes the gaps of what is marked by -1. */
+static void close_gaps(struct render_weights *w, size_t pixels)
+{
+	int64_t kept = 0, begin = 0;
+
+	for (size_t p = 0; p < pixels; p++) {
+		int64_t end = w->indptr[p + 1];
+		for (int64_t i = begin; i < end && w->weight[i] >= 0; i++) {
+			w->index[kept] = w->index[i];
+			w->weight[kept++] = w->weight[i];
+		}
+		begin = end;
+		w->indptr[p + 1] = kept;
 	}
 }
 
-/* Room for a few chunks, so that the records stay in the cache: (threads). */
-enum { RECORD_CHUNKS = 2 };
-
-static void records_free(struct blend_records *records, int threads)
+static int weigh_tiles(const struct render_view *v, const struct render_limits *limits,
+	struct render_weights *w, float *dropped, struct err *e)
 {
-	for (int i = 0; records && i < threads; i++)
-		mem_free_all(records[i].items, records[i].weights);
-	free(records);
-}
+	const size_t tiles = (size_t)v->grid.columns * (size_t)v->grid.rows;
+	int failed = 0;
 
-static struct blend_records *records_make(int threads, struct err *e)
-{
-	struct blend_records *records = mem_zalloc((size_t)threads, sizeof *records, "weights", e);
-
-	for (int i = 0; records && i < threads; i++) {
-		struct blend_records *r = &records[i];
-		r->capacity = RECORD_CHUNKS * BLEND_RECORD_ROOM;
-		r->weight_capacity = RECORD_CHUNKS * BLEND_WEIGHT_ROOM;
-		r->items = mem_alloc(r->capacity, sizeof *r->items, "weights", e);
-		r->weights = mem_alloc(r->weight_capacity, sizeof *r->weights, "weights", e);
-		if (!r->items || !r->weights) {
-			records_free(records, threads);
-			return NULL;
+#pragma omp parallel num_threads(threads_available()) reduction(| : failed)
+	{
+		SCOPED_BY(weigh_tile_free) struct weigh_tile t __attribute__((aligned(64))) = {.n = 0};
+		struct err mine;
+#pragma omp for schedule(dynamic)
+		for (size_t k = 0; k < tiles; k++) {
+			failed = failed || weigh_tile_start(&t, v, k, &mine);
+			if (!failed)
+				weigh_pixels(&t, limits, w, dropped);
+		}
+		if (failed) {
+#pragma omp critical
+			*e = mine;
 		}
 	}
-	return records;
+	return failed ? -1 : 0;
 }
 
-static int weigh_frame(
-	const struct render_view *v, const struct frame *f, struct render_weights *w, struct err *e)
+int render_weights_within(const struct render_view *v, const struct render_limits *limits,
+	struct render_weights *w, float *dropped, struct err *e)
 {
-	const size_t pixels = (size_t)f->grid.width * (size_t)f->grid.height,
-		     tiles = (size_t)f->grid.columns * (size_t)f->grid.rows;
-	const int threads = threads_available();
-	struct blend_records *records = records_make(threads, e);
+	const size_t pixels = (size_t)v->grid.width * (size_t)v->grid.height,
+		     tiles = (size_t)v->grid.columns * (size_t)v->grid.rows;
 
-	if (!records ||
-		mem_room((void **)&w->indptr, &w->indptr_room, pixels + 1, sizeof *w->indptr, "weights", e) ||
+	if (mem_room((void **)&w->indptr, &w->indptr_room, pixels + 1, sizeof *w->indptr, "weights", e) ||
 		mem_room((void **)&w->transmittance, &w->transmittance_room, pixels, sizeof *w->transmittance,
 			"weights", e))
 		goto fail;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
+#pragma omp parallel for schedule(dynamic) num_threads(threads_available())
 	for (size_t k = 0; k < tiles; k++)
-		count_tile(v, f, k, w);
+		count_tile(v, k, w);
 	w->indptr[0] = 0;
 	for (size_t p = 0; p < pixels; p++)
 		w->indptr[p + 1] += w->indptr[p];
 	const size_t all = (size_t)w->indptr[pixels];
 	if (mem_room((void **)&w->index, &w->index_room, all, sizeof *w->index, "weights", e) ||
-		mem_room((void **)&w->weight, &w->weight_room, all, sizeof *w->weight, "weights", e))
+		mem_room((void **)&w->weight, &w->weight_room, all, sizeof *w->weight, "weights", e) ||
+		weigh_tiles(v, limits, w, dropped, e))
 		goto fail;
-#pragma omp parallel for schedule(dynamic) num_threads(threads)
-	for (size_t k = 0; k < tiles; k++)
-		weigh_tile(v, f, k, &records[omp_get_thread_num()], w);
-	records_free(records, threads);
+	if (limits->tolerance > 0 || limits->least > 0)
+		close_gaps(w, pixels);
 	return 0;
 fail:
-	records_free(records, threads);
 	render_weights_free(w);
 	return -1;
 }
 
 int render_weights_again(const struct render_view *v, struct render_weights *w, struct err *e)
 {
-	const struct frame all = {0, 0, v->grid};
-
-	return weigh_frame(v, &all, w, e);
-}
-
-int render_weights_part(
-	const struct render_view *v, const struct render_part *part, struct render_weights *w, struct err *e)
-{
-	const struct frame f = {part->x, part->y, tile_grid(part->width, part->height)};
-
-	return weigh_frame(v, &f, w, e);
+	return render_weights_within(v, &(struct render_limits){0}, w, NULL, e);
 }
 
 int render_weights(const struct render_view *v, struct render_weights *w, struct err *e)

@@ -72,24 +72,37 @@ static int put_gaussian(struct weights_pack *p, const uint8_t levels[PIXELS], st
 	return 0;
 }
 
-int weights_packer_make(struct weights_packer *t, size_t gaussians, struct err *e)
-{
-	*t = (struct weights_packer){
-		.gaussians = gaussians, .slot = mem_alloc(gaussians, sizeof *t->slot, "weights", e)};
-	if (!t->slot)
-		return -1;
-	memset(t->slot, -1, gaussians * sizeof *t->slot);
-	return 0;
-}
-
 void weights_packer_free(struct weights_packer *t)
 {
 	mem_free_all(t->ids, t->spare, t->levels, t->slot);
 	*t = (struct weights_packer){0};
 }
 
+int weights_packer_start(struct weights_packer *t, size_t list, struct err *e)
+{
+	t->n = 0;
+	if (mem_room((void **)&t->ids, &t->room[0], list, sizeof *t->ids, "weights", e) ||
+		mem_room((void **)&t->spare, &t->room[1], list, sizeof *t->spare, "weights", e) ||
+		mem_room((void **)&t->levels, &t->room[2], list, sizeof *t->levels, "weights", e) ||
+		mem_room((void **)&t->slot, &t->room[3], list, sizeof *t->slot, "weights", e))
+		return -1;
+	memset(t->slot, -1, list * sizeof *t->slot);
+	return 0;
+}
+
+uint8_t *weights_packer_levels(struct weights_packer *t, size_t place, uint32_t id)
+{
+	if (t->slot[place] < 0) {
+		memset(t->levels[t->n], 0, PIXELS);
+		t->slot[place] = (int32_t)t->n;
+		t->ids[t->n] = (uint64_t)id << 32 | t->n;
+		t->n++;
+	}
+	return t->levels[t->slot[place]];
+}
+
 /* Sorts by the bits from `shift` on, stably: one pass of a radix sort. */
-static void sort_pass(const int32_t *from, int32_t *to, size_t n, int shift)
+static void sort_pass(const uint64_t *from, uint64_t *to, size_t n, int shift)
 {
 	size_t place[256] = {0}, sum = 0;
 
@@ -104,84 +117,29 @@ static void sort_pass(const int32_t *from, int32_t *to, size_t n, int shift)
 		to[place[from[i] >> shift & 255]++] = from[i];
 }
 
-static void sort_ids(struct weights_packer *t)
+static void sort_ids(struct weights_packer *t, size_t gaussians)
 {
-	for (int shift = 0; shift < 32 && (t->gaussians - 1) >> shift; shift += 8) {
-		int32_t *sorted = t->spare;
-		sort_pass(t->ids, sorted, t->n, shift);
+	for (int shift = 0; shift < 32 && (gaussians - 1) >> shift; shift += 8) {
+		uint64_t *sorted = t->spare;
+		sort_pass(t->ids, sorted, t->n, 32 + shift);
 		t->spare = t->ids;
 		t->ids = sorted;
 	}
 }
 
-static int put_tile(struct weights_pack *p, struct weights_packer *t, struct err *e)
+int weights_packer_end(struct weights_packer *t, size_t gaussians, struct weights_pack *row, struct err *e)
 {
-	int32_t before = 0;
-	int bad = put_number(p, (uint32_t)t->n, e);
+	uint32_t before = 0;
+	int bad = put_number(row, (uint32_t)t->n, e);
 
 	if (t->n)
-		sort_ids(t);
+		sort_ids(t, gaussians);
 	for (size_t i = 0; i < t->n && !bad; i++) {
-		bad = put_number(p, (uint32_t)(t->ids[i] - before), e) ||
-		      put_gaussian(p, t->levels[t->slot[t->ids[i]]], e);
-		before = t->ids[i];
+		const uint32_t id = (uint32_t)(t->ids[i] >> 32), slot = (uint32_t)t->ids[i];
+		bad = put_number(row, id - before, e) || put_gaussian(row, t->levels[slot], e);
+		before = id;
 	}
-	for (size_t i = 0; i < t->n; i++)
-		t->slot[t->ids[i]] = -1;
 	return bad ? -1 : 0;
-}
-
-/* Room for a tile with so many weights. */
-static int make_room(struct weights_packer *t, size_t weights, struct err *e)
-{
-	return mem_room((void **)&t->ids, &t->room[0], weights, sizeof *t->ids, "weights", e) ||
-	       mem_room((void **)&t->spare, &t->room[1], weights, sizeof *t->spare, "weights", e) ||
-	       mem_room((void **)&t->levels, &t->room[2], weights, sizeof *t->levels, "weights", e);
-}
-
-static void meet(struct weights_packer *t, int32_t id, int pixel, uint8_t level)
-{
-	if (t->slot[id] < 0) {
-		memset(t->levels[t->n], 0, PIXELS);
-		t->slot[id] = (int32_t)t->n;
-		t->ids[t->n++] = id;
-	}
-	t->levels[t->slot[id]][pixel] = level;
-}
-
-/* The tile whose corner is at column x and row y. */
-static int take_tile(struct weights_packer *t, const struct weights_picture *v, int x, int y, struct err *e)
-{
-	const int right = x + VIEW_TILE < v->width ? x + VIEW_TILE : v->width,
-		  bottom = y + VIEW_TILE < v->height ? y + VIEW_TILE : v->height;
-	int64_t weights = 0;
-
-	for (int row = y; row < bottom; row++)
-		weights +=
-			v->indptr[(int64_t)row * v->width + right] - v->indptr[(int64_t)row * v->width + x];
-	t->n = 0;
-	if (make_room(t, (size_t)weights, e))
-		return -1;
-	for (int row = y; row < bottom; row++)
-		for (int column = x; column < right; column++) {
-			const int64_t at = (int64_t)row * v->width + column;
-			for (int64_t k = v->indptr[at]; k < v->indptr[at + 1]; k++) {
-				const uint8_t level = (uint8_t)(v->weight[k] * 255 + 0.5f);
-				if (level)
-					meet(t, v->index[k], (row - y) * VIEW_TILE + column - x, level);
-			}
-		}
-	return 0;
-}
-
-int weights_pack_part(
-	struct weights_pack *rows, struct weights_packer *t, const struct weights_picture *v, struct err *e)
-{
-	for (int y = 0; y < v->height; y += VIEW_TILE)
-		for (int x = 0; x < v->width; x += VIEW_TILE)
-			if (take_tile(t, v, x, y, e) || put_tile(&rows[y / VIEW_TILE], t, e))
-				return -1;
-	return 0;
 }
 
 /* A stream of all rows, one after another, as one frame. */

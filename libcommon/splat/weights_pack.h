@@ -15,32 +15,26 @@ struct weights_pack {
 	uint8_t *data[WEIGHTS_STREAMS];
 };
 
-/* Weights of 0 to 1, CSR over the pixels of a picture or of a part of it. They are rounded to 1/255; those of
- * 0 are left out, and of two of one Gaussian in a pixel the later one. */
-struct weights_picture {
-	int width, height;
-	const int64_t *indptr; /* (P+1) */
-	const int32_t *index;
-	const float *weight;
-};
-
-/* Memory for packing a scene's weights, one thread's. */
+/* Memory for packing tiles, one thread's; zeroed before the first. */
 struct weights_packer {
-	size_t gaussians, n;		     /* of the scene, and of a tile */
-	int32_t *ids, *spare;		     /* (n), as they are met or rising; and room for as many */
-	uint8_t (*levels)[VIEW_TILE_PIXELS]; /* (n) as they are met */
-	int32_t *slot;			     /* (gaussians) where each is met, -1 */
-	size_t room[3];			     /* of ids, spare and levels */
+	size_t n;			     /* Gaussians of the tile */
+	uint64_t *ids, *spare;		     /* (n) each and, in the low half, where its levels are */
+	uint8_t (*levels)[VIEW_TILE_PIXELS]; /* (n) */
+	int32_t *slot;			     /* (list) where each that may be in the tile is met, -1 */
+	size_t room[4];			     /* of ids, spare, levels and slot */
 };
 
-/* Returns 0, or -1 with *e set; free after either. */
-int weights_packer_make(struct weights_packer *t, size_t gaussians, struct err *e);
 void weights_packer_free(struct weights_packer *t);
 
-/* Packs the next part of some rows of tiles, which go on in rows (height/8, rounded up), zeroed before the
- * first. Parts are whole tiles but at the picture's edge. Returns 0, or -1 with *e set. */
-int weights_pack_part(
-	struct weights_pack *rows, struct weights_packer *t, const struct weights_picture *v, struct err *e);
+/* A tile of VIEW_TILE x VIEW_TILE pixels, of some of the `list` Gaussians of a list. Returns 0, or -1 with *e
+ * set. */
+int weights_packer_start(struct weights_packer *t, size_t list, struct err *e);
+/* The levels of the Gaussian at a place of the list, in 1/255, row by row: to be written where they are not
+ * 0. */
+uint8_t *weights_packer_levels(struct weights_packer *t, size_t place, uint32_t id);
+/* Ends the tile, which goes on in a row of tiles that was zeroed before its first. The scene has so many
+ * Gaussians. */
+int weights_packer_end(struct weights_packer *t, size_t gaussians, struct weights_pack *row, struct err *e);
 
 /* All rows of tiles, compressed. They are empty after it, and have room for the next picture's; *p, zeroed
  * before the first, may be used again too. Returns 0, or -1 with *e set. */

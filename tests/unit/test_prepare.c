@@ -3,10 +3,12 @@
 
 #include "base/mem.h"
 #include "base/rng.h"
+#include "pack_whole.h"
 #include "splat/kernels.h"
 #include "splat/order.h"
 #include "splat/render.h"
 #include "splat/view.h"
+#include "splat/weigh_packed.h"
 
 #include <omp.h>
 
@@ -160,33 +162,33 @@ static void check_same(const char *what, const struct render_view *fresh, const 
 		"%s: the same weights", what);
 }
 
-/* The weights of parts are those of their pixels in all. */
-static void check_parts(const char *what, const struct render_view *v, const struct render_weights *all)
+/* Packed weights are the weights, packed. */
+static void check_packed(const char *what, struct weighed_packed *to, const struct render_view *v)
 {
-	const int width = v->grid.width, height = v->grid.height, across = 3 * RENDER_PART;
+	const size_t pixels = (size_t)v->grid.width * (size_t)v->grid.height;
+	const struct render_limits limits = {0.05, 0.5 / 255};
 	struct render_weights w = {0};
+	struct weights_pack whole;
+	float *dropped[2] = {need(pixels, sizeof **dropped), need(pixels, sizeof **dropped)};
 	struct err e;
-	long wrong = 0;
 
-	for (int y = 0; y < height; y += RENDER_PART)
-		for (int x = 0; x < width; x += across) {
-			const struct render_part part = {x, y, width - x < across ? width - x : across,
-				height - y < RENDER_PART ? height - y : RENDER_PART};
-			if (render_weights_part(v, &part, &w, &e))
-				abort();
-			for (int i = 0; i < part.width * part.height; i++) {
-				const int p = (y + i / part.width) * width + x + i % part.width;
-				const size_t n = (size_t)(w.indptr[i + 1] - w.indptr[i]) * 4;
-				wrong += w.indptr[i + 1] - w.indptr[i] !=
-						 all->indptr[p + 1] - all->indptr[p] ||
-					 memcmp(w.index + w.indptr[i], all->index + all->indptr[p], n) != 0 ||
-					 memcmp(w.weight + w.indptr[i], all->weight + all->indptr[p], n) !=
-						 0 ||
-					 w.transmittance[i] != all->transmittance[p];
-			}
-		}
+	if (render_weights_within(v, &limits, &w, dropped[0], &e) ||
+		weigh_packed(to, v, &limits, dropped[1], &e) ||
+		pack_whole(
+			&whole, v->grid.width, v->grid.height, v->gaussians, w.indptr, w.index, w.weight, &e))
+		abort();
+	CHECK(to->weights == (size_t)w.indptr[pixels] &&
+			to->covered == weigh_covered(w.transmittance, pixels) &&
+			!memcmp(dropped[0], dropped[1], pixels * sizeof **dropped),
+		"%s: as many packed weights, and as much left out", what);
+	for (int s = 0; s < WEIGHTS_STREAMS; s++)
+		CHECK(to->pack.packed[s] == whole.packed[s] &&
+				!memcmp(to->pack.data[s], whole.data[s], whole.packed[s]),
+			"%s: the same %s", what, weights_stream_name[s]);
+	weights_pack_free(&whole);
 	render_weights_free(&w);
-	CHECK(!wrong, "%s: %ld pixels of parts differ", what, wrong);
+	free(dropped[0]);
+	free(dropped[1]);
 }
 
 /* A view and weights that go from one camera and scene to another give the bytes of fresh ones, whatever the
@@ -199,6 +201,7 @@ static void used_again(void)
 		make_splats(4, 0), make_splats(5, 9001)};
 	struct render_view *again = NULL;
 	struct render_weights kept = {0}, one;
+	struct weighed_packed packed = {0};
 	struct err e;
 
 	for (int i = 0; i < 15; i++) {
@@ -214,11 +217,12 @@ static void used_again(void)
 		if (!fresh || render_weights(fresh, &one, &e) || render_weights_again(again, &kept, &e))
 			abort();
 		check_same(what, fresh, again, &one, &kept);
-		check_parts(what, again, &one);
+		check_packed(what, &packed, again);
 		render_weights_free(&one);
 		render_free(fresh);
 	}
 	render_weights_free(&kept);
+	weighed_packed_free(&packed);
 	render_free(again);
 	for (int i = 0; i < 5; i++)
 		splats_free((struct splats *)&scenes[i]);

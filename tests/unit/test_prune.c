@@ -1,18 +1,18 @@
-/* Which of a view's weights are left out, against a twin that sorts and sums in whole numbers. */
+/* Which of a block's weights are left out, against a twin that sorts and sums in long double. */
 #include "unit.h"
 
 #include "base/rng.h"
-#include "splat/prune.h"
+#include "splat/kernels.h"
 
-#include <omp.h>
+enum { BLOCKS = 25, LONGEST = 300 };
 
-enum { PIXELS = 400, LONGEST = 300 };
-
-/* Rows as they are rendered: at least 2^-29, at most 1 in sum; some empty, some with many equal weights. */
+/* A block as it is rendered: weights of at least 2^-29, of a pixel at most 1 in sum; some with none, some
+ * with many equal ones. */
 struct sample {
-	int64_t indptr[PIXELS + 1];
-	int32_t index[PIXELS * LONGEST];
-	float weight[PIXELS * LONGEST], transmittance[PIXELS];
+	float weights[LONGEST + BLEND_ROWS_MORE][BLEND_LANES];
+	uint32_t places[LONGEST];
+	uint16_t lanes[LONGEST];
+	struct blend_rows rows;
 };
 
 static float draw(struct rng *r, int kind, size_t n)
@@ -26,19 +26,14 @@ static float draw(struct rng *r, int kind, size_t n)
 	return 0x1p-9F * (float)(1 + rng_below(r, 2)) * (rng_below(r, 3) ? 1 : 0x1p-20F);
 }
 
-static void sample_init(struct sample *s, uint64_t seed)
+static void sample_init(struct sample *s, struct rng *r, int kind)
 {
-	struct rng r;
-
-	rng_seed(&r, seed, 1);
-	s->indptr[0] = 0;
-	for (int p = 0; p < PIXELS; p++) {
-		const size_t n = p % 7 ? rng_below(&r, LONGEST + 1) : rng_below(&r, 4);
-		for (size_t k = 0; k < n; k++) {
-			s->index[s->indptr[p] + (int64_t)k] = (int32_t)rng_below(&r, 1000);
-			s->weight[s->indptr[p] + (int64_t)k] = draw(&r, p % 3, n);
-		}
-		s->indptr[p + 1] = s->indptr[p] + (int64_t)n;
+	s->rows = (struct blend_rows){
+		s->weights, s->places, s->lanes, kind % 7 ? rng_below(r, LONGEST + 1) : rng_below(r, 4)};
+	for (size_t k = 0; k < s->rows.n; k++) {
+		s->places[k] = (uint32_t)k;
+		for (int l = 0; l < BLEND_LANES; l++)
+			s->weights[k][l] = rng_below(r, 4) ? draw(r, (kind + l) % 3, s->rows.n) : 0;
 	}
 }
 
@@ -83,39 +78,53 @@ static float twin(const float *row, size_t n, double tolerance, double least, ch
 	return out < 1 ? (float)out : 1;
 }
 
-static void test_rows(double tolerance, double least, int threads)
+/* How many of a lane's weights go; they must be those that go from the twin's. */
+static size_t check_lane(const struct sample *before, const struct sample *s, int lane, float dropped,
+	double tolerance, double least)
+{
+	float row[LONGEST];
+	char goes[LONGEST];
+	size_t n = 0, out = 0, at = 0;
+	int same = 1;
+
+	for (size_t k = 0; k < before->rows.n; k++)
+		if (before->weights[k][lane] > 0)
+			row[n++] = before->weights[k][lane];
+	const float sum = twin(row, n, tolerance, least, goes);
+	for (size_t k = 0, j = 0; k < before->rows.n; k++) {
+		const int stays = j < s->rows.n && s->places[j] == k;
+		const float was = before->weights[k][lane], is = stays ? s->weights[j][lane] : 0;
+		j += (size_t)stays;
+		same &= is == (was > 0 && !goes[at] ? was : 0);
+		out += was > 0 && goes[at];
+		at += was > 0;
+	}
+	CHECK(same, "tolerance %g, least %g: %zu weights", tolerance, least, n);
+	CHECK(sum == dropped, "tolerance %g, least %g: %zu weights drop %.9g, not %.9g", tolerance, least, n,
+		(double)dropped, (double)sum);
+	return out;
+}
+
+static void test_blocks(double tolerance, double least, enum cpu_level level)
 {
 	static struct sample before, s;
-	static float dropped[PIXELS];
-	struct render_weights w = {.indptr = s.indptr, .index = s.index, .weight = s.weight};
 	size_t out = 0;
-	struct err e;
+	struct rng r;
 
-	omp_set_num_threads(threads);
-	sample_init(&before, (uint64_t)threads);
-	s = before;
-	if (!CHECK(!prune_weights(&w, PIXELS, tolerance, least, dropped, &e), "%s", e.message))
-		return;
-	for (size_t p = 0; p < PIXELS; p++) {
-		const float *row = before.weight + before.indptr[p];
-		const size_t n = (size_t)(before.indptr[p + 1] - before.indptr[p]);
-		char goes[LONGEST];
-		int64_t at = s.indptr[p];
-		const float sum = twin(row, n, tolerance, least, goes);
+	rng_seed(&r, 1 + (uint64_t)level, 1);
+	for (int b = 0; b < BLOCKS; b++) {
+		float dropped[BLEND_LANES], from = (float)least;
 		int same = 1;
-		for (size_t i = 0; i < n; i++) {
-			out += goes[i];
-			if (goes[i])
-				continue;
-			same &= at < s.indptr[p + 1] && s.weight[at] == row[i] &&
-				s.index[at] == before.index[before.indptr[p] + (int64_t)i];
-			at++;
-		}
-		CHECK(same && at == s.indptr[p + 1], "tolerance %g, least %g: row %zu of %zu weights",
-			tolerance, least, p, n);
-		CHECK(!memcmp(&sum, &dropped[p], sizeof sum),
-			"tolerance %g, least %g: row %zu drops %.9g, not %.9g", tolerance, least, p,
-			(double)dropped[p], (double)sum);
+		sample_init(&s, &r, b);
+		before = s;
+		kernels_of(level)->prune(
+			&s.rows, tolerance, (double)from < least ? nextafterf(from, 1) : from, dropped);
+		for (int l = 0; l < BLEND_LANES; l++)
+			out += check_lane(&before, &s, l, dropped[l], tolerance, least);
+		for (size_t k = 0; k < s.rows.n; k++)
+			for (int l = 0; l < BLEND_LANES; l++)
+				same &= (s.lanes[k] >> l & 1) == (s.weights[k][l] > 0);
+		CHECK(same, "lanes are those that have a weight");
 	}
 	CHECK((tolerance > 1e-9 || least > 0) == (out > 0), "tolerance %g, least %g: %zu go", tolerance,
 		least, out);
@@ -126,8 +135,9 @@ int main(void)
 	const double tolerances[] = {0, 1e-12, 0.01, 0.05, 0.5, 0.999},
 		     leasts[] = {0, 0.5 / 255, 0x1p-9, 0.3};
 
-	for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++)
-		for (size_t k = 0; k < sizeof leasts / sizeof *leasts; k++)
-			test_rows(tolerances[t], leasts[k], 1 + (int)(t + k) % 3);
+	for (enum cpu_level level = CPU_PLAIN; level <= cpu_level(); level++)
+		for (size_t t = 0; t < sizeof tolerances / sizeof *tolerances; t++)
+			for (size_t k = 0; k < sizeof leasts / sizeof *leasts; k++)
+				test_blocks(tolerances[t], leasts[k], level);
 	return unit_end();
 }
