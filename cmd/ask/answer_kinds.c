@@ -34,38 +34,7 @@ int answering_is_unsure(const struct asking_answer *a)
 	       (p < sure || a->probability[a->runner_up] >= as_likely * p);
 }
 
-static const struct box *box_of(const struct answer_told *t, size_t object)
-{
-	return &t->asking->model.extents[object].turned;
-}
-
-/* The length that a kind of question is about: the height of a box, its longer side, or their mean. */
-double answering_length(const struct answer_told *t, size_t object, enum question_kind kind)
-{
-	const double *half = box_of(t, object)->half;
-
-	if (kind == QUESTION_HEIGHT)
-		return 2 * half[2];
-	return 2 * (kind == QUESTION_WIDTH ? fmax(half[0], half[1]) : cbrt(half[0] * half[1] * half[2]));
-}
-
-const char *answering_length_name(enum question_kind kind)
-{
-	return kind == QUESTION_HEIGHT ? "height" : kind == QUESTION_WIDTH ? "width" : "size";
-}
-
-/* Nothing is measured of a thing that has no Gaussians. */
-void answering_need_boxes(const struct answer_told *t, struct asking_answer *found)
-{
-	for (size_t k = 0; k < found->count; k++)
-		if (!t->asking->model.extents[found->things[k]].n) {
-			snprintf(found->reason, sizeof found->reason, "nothing is seen of %.200s",
-				t->asking->model.lifted.names[found->things[k]]);
-			found->count = 0;
-		}
-}
-
-static void say_number(struct answer_told *t, size_t n)
+void answering_say_number(struct answer_told *t, size_t n)
 {
 	static const char *const words[] = {"none", "one", "two", "three", "four", "five", "six", "seven",
 		"eight", "nine", "ten", "eleven", "twelve"};
@@ -74,34 +43,6 @@ static void say_number(struct answer_told *t, size_t n)
 		answering_say(t, "%s", words[n]);
 	else
 		answering_say(t, "%zu", n);
-}
-
-/* How large the thing is, and beside the other thing that is most like it in that. */
-static void say_size(struct answer_told *t)
-{
-	const struct asking *a = t->asking;
-	const size_t thing = t->answer->things[0];
-	const double own = answering_length(t, thing, t->asked.kind), *half = box_of(t, thing)->half;
-	char text[3][LENGTH_TEXT];
-	size_t like = ASKING_NONE;
-	double least = INFINITY;
-
-	for (size_t o = 0; o < a->model.lifted.objects; o++) {
-		const double off = fabs(log(answering_length(t, o, t->asked.kind) / own));
-		if (o != thing && a->model.extents[o].n && off < least) {
-			like = o;
-			least = off;
-		}
-	}
-	if (t->asked.kind == QUESTION_SIZE)
-		answering_say(t, "%s x %s x %s high", answer_length(a, 2 * half[0], text[0]),
-			answer_length(a, 2 * half[1], text[1]), answer_length(a, 2 * half[2], text[2]));
-	else
-		answering_say(t, "%s %s", answer_length(a, own, text[0]),
-			t->asked.kind == QUESTION_HEIGHT ? "high" : "wide");
-	if (like != ASKING_NONE)
-		answering_say(t, ", %.2g times the %s of %s", own / answering_length(t, like, t->asked.kind),
-			answering_length_name(t->asked.kind), a->model.lifted.names[like]);
 }
 
 /* Which of two the first thing is. */
@@ -139,7 +80,7 @@ static int list(struct answer_told *t, struct asking_answer *found, struct askin
 	}
 	found->there = found->count > 0;
 	snprintf(found->reason, sizeof found->reason, "the model has no objects");
-	say_number(t, found->count);
+	answering_say_number(t, found->count);
 	answering_say(t, " thing%s", found->count == 1 ? "" : "s");
 	return 0;
 }
@@ -183,6 +124,16 @@ static void keep_holding(struct asking_answer *a, int is_number)
 		if (a->holds[a->things[k]] >= holds || a->is_by_purpose)
 			a->things[n++] = a->things[k];
 	a->count = n || !is_number ? n : a->count;
+}
+
+int answering_all(const struct answer_told *t, const char *phrase, struct asking_answer *found,
+	struct asking *a, const struct report *to, struct err *e)
+{
+	if (asking_ask(a, phrase, 1, found, to, e))
+		return -1;
+	keep_holding(found, 1);
+	drop_at_nothing(t, found);
+	return 0;
 }
 
 /* Whether the first things, which are there, are what the second question says; whether any is, of "any", "a
@@ -256,7 +207,7 @@ static int answer_set(struct answer_told *t, struct asking_answer *found, struct
 static int answer_one(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e)
 {
-	const int is_all = t->asked.kind == QUESTION_NUMBER || t->asked.kind == QUESTION_THERE,
+	const int is_all = t->asked.kind == QUESTION_THERE,
 		  is_what = t->asked.kind == QUESTION_WHICH && question_is_open(t->understood);
 
 	if (asking_ask(a, t->asked.text[0], is_all, found, to, e))
@@ -282,6 +233,13 @@ static int find_things(struct answer_told *t, struct asking_answer *found, struc
 		return answer_whether(t, found, a, to, e);
 	case QUESTION_SET:
 		return answer_set(t, found, a, to, e);
+	case QUESTION_NUMBER:
+		return answering_all(t, t->asked.text[0], found, a, to, e);
+	case QUESTION_TALLY:
+	case QUESTION_EVEN:
+	case QUESTION_MAJORITY:
+	case QUESTION_SURPLUS:
+		return answering_counts(t, found, a, to, e);
 	default:
 		return answer_one(t, found, a, to, e);
 	}
@@ -358,14 +316,16 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 
 	if (find_things(t, found, a, to, e))
 		return -1;
-	if (t->asked.kind == QUESTION_THERE || kind == QUESTION_NUMBER) {
-		keep_holding(found, kind == QUESTION_NUMBER);
+	if (t->asked.kind == QUESTION_THERE) {
+		keep_holding(found, 0);
 		drop_at_nothing(t, found);
 	}
 	t->is_yes |= t->asked.kind == QUESTION_THERE && found->count && (int)found->count >= t->asked.least;
 	take_motion(t, found);
+	if (kind == QUESTION_NUMBER || kind == QUESTION_LIST)
+		t->number = (long)found->count;
 	if (kind == QUESTION_NUMBER)
-		say_number(t, found->count);
+		answering_say_number(t, found->count);
 	if (kind >= QUESTION_HEIGHT && kind <= QUESTION_SIZE)
 		answering_need_boxes(t, found);
 	if (!found->count)
@@ -378,6 +338,6 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 	else if (kind == QUESTION_COLOUR || kind == QUESTION_LOOK)
 		answer_looks(t, kind == QUESTION_COLOUR, t->value, sizeof t->value);
 	else if (kind >= QUESTION_HEIGHT && kind <= QUESTION_SIZE)
-		say_size(t);
+		answering_say_size(t);
 	return 0;
 }

@@ -101,8 +101,10 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 
 static int is_yes_or_no(const struct answer_told *t)
 {
-	return !t->is_unsure && (t->asked.kind == QUESTION_THERE || t->asked.kind == QUESTION_WHETHER ||
-					t->asked.kind == QUESTION_MORE);
+	static const unsigned kinds = 1U << QUESTION_THERE | 1U << QUESTION_WHETHER | 1U << QUESTION_MORE |
+				      1U << QUESTION_TALLY | 1U << QUESTION_EVEN;
+
+	return !t->is_unsure && kinds >> t->asked.kind & 1;
 }
 
 int answer_is_no(const struct answer_told *t)
@@ -212,10 +214,13 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 		fputs("  answered by what the thing is for\n", out);
 	if (a->count && a->is_guess)
 		fputs("a guess: ", out);
+	const char *yes = t->is_yes ? "yes" : "no";
+	if (is_yes_or_no(t) && *t->value)
+		fprintf(out, "%s, ", yes);
 	if (t->is_unsure)
 		put_choice(t, out);
-	else if (is_yes_or_no(t))
-		put_value(t, t->is_yes ? "yes" : "no", out);
+	else if (is_yes_or_no(t) && !*t->value)
+		put_value(t, yes, out);
 	else if (*t->value)
 		put_value(t, t->value, out);
 	else if (!a->count)
@@ -312,8 +317,9 @@ int answer_put_json(const struct answer_told *t, FILE *out, struct err *e)
 		jsontext_flag(to, "yes", t->is_yes);
 	if (*t->value)
 		jsontext_string(to, "value", t->value);
-	if (t->asked.kind == QUESTION_NUMBER || t->asked.kind == QUESTION_LIST)
-		jsontext_number(to, "number", (double)a->count);
+	if (t->asked.kind == QUESTION_NUMBER || t->asked.kind == QUESTION_LIST ||
+		t->asked.kind == QUESTION_SURPLUS)
+		jsontext_number(to, "number", (double)t->number);
 	if (t->is_unsure)
 		jsontext_flag(to, "unsure", 1);
 	if (a->count && a->is_guess)

@@ -6,10 +6,25 @@
 /* Adds to t->value. */
 __attribute__((format(printf, 2, 3))) void answering_say(struct answer_told *t, const char *format, ...);
 
+/* The same of a number: "none", "two". */
+void answering_say_number(struct answer_told *t, size_t n);
+
+/* All things of a phrase, as they are counted. Returns 0, or -1 with *e set. */
+int answering_all(const struct answer_told *t, const char *phrase, struct asking_answer *found,
+	struct asking *a, const struct report *to, struct err *e);
+
+/* Of how many there are of two kinds of things, t->asked's: t->is_yes, t->number and t->value, and the things
+ * as `found`. Returns 0, or -1 with *e set. */
+int answering_counts(struct answer_told *t, struct asking_answer *found, struct asking *a,
+	const struct report *to, struct err *e);
+
 /* The length that a kind of question is about: the height of a box, its longer side, or their mean; and its
  * name. */
 double answering_length(const struct answer_told *t, size_t object, enum question_kind kind);
 const char *answering_length_name(enum question_kind kind);
+
+/* How large the thing is, and beside the other thing that is most like it in that. */
+void answering_say_size(struct answer_told *t);
 
 /* Nothing is measured of a thing that has no Gaussians. */
 void answering_need_boxes(const struct answer_told *t, struct asking_answer *found);

@@ -40,6 +40,10 @@ static int answer(struct answer_told *t, struct asking_answer *found, struct ask
 		talk, a->model.lifted.names, a->model.lifted.objects, t->question, t->understood);
 	chooser_within(a->chooser, of);
 	question_read(&t->asked, t->understood, 0);
+	if (of && t->asked.kind == QUESTION_LIST) { /* "name them" */
+		t->asked.kind = QUESTION_WHICH;
+		snprintf(t->asked.text[0], sizeof t->asked.text[0], "all the things");
+	}
 	int bad = is_of_nothing(&t->asked) ? refuse(found, a, e) : kinds_answer(t, found, a, to, e);
 	chooser_within(a->chooser, NULL);
 	/* "how many mugs are brown? how many are blue?": of the mugs, as no brown one is */

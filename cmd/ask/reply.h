@@ -56,6 +56,7 @@ struct talk {
 	struct meaning_set set;	      /* "them": the last answer of several */
 	int is_several;		      /* it was the last one */
 	struct meaning_set of;	      /* which the last questions were about some of: "the red one" */
+	struct meaning_set rest;      /* the others of the kind that was answered */
 	char question[QUESTION_TEXT]; /* that was asked last, as it was understood; "": none */
 };
 #define TALK_NEW                                                                                             \
@@ -72,6 +73,7 @@ struct answer_told {
 	struct question_asked asked;
 	const struct asking_answer *answer;
 	int is_yes, is_unsure; /* of a question of yes or no; where another thing is as likely */
+	long number;	       /* of kinds that count */
 	char value[256];       /* the answer of kinds that do not ask for a thing: "two", "black and grey" */
 	int is_verbose;	       /* words say where and how large the things are */
 	int is_picked;

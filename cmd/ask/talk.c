@@ -145,7 +145,7 @@ static int add_those(const struct talk *talk, int is_part, const char *question,
 	if (is_part)
 		is &= !*noun && tokens_class(&t, 0) == CLOSED_DETERMINER;
 	i = is_part ? t.n : tokens_is(&t, i, "which") ? i + 1 : tokens_is(&t, i + 1, "many") ? i + 2 : 0;
-	is &= i && (i == t.n || tokens_class(&t, i) == CLOSED_BE);
+	is &= i && (i == t.n || tokens_class(&t, i) == CLOSED_BE || tokens_class(&t, i) == CLOSED_HAVE);
 	const int end = i && i <= t.n ? t.word[i - 1].span.end : 0;
 	snprintf(to, QUESTION_TEXT, "%.*s%s%.*s", end, question, is ? " of those" : "",
 		is_part ? 0 : QUESTION_TEXT - 64 - end, question + end);
@@ -231,146 +231,29 @@ const struct meaning_set *talk_understand(const struct talk *talk, char *const *
 {
 	struct referents r = {0};
 	struct question_asked last;
-	char of_those[QUESTION_TEXT];
+	char of_those[QUESTION_TEXT], of_rest[QUESTION_TEXT];
 	struct tokens t;
 
-	tokens_take(&t, question, NULL, NULL, 0);
 	if (!talk || !*talk->question || talk->thing == ASKING_NONE) {
 		talk_put_pointed(&r, question, understood);
 		return NULL;
 	}
+	const int is_rest = talk_put_rest(&talk->rest, question, of_rest);
+	question = of_rest;
+	tokens_take(&t, question, NULL, NULL, 0);
 	question_read(&last, talk->question, 0);
 	find_referents(talk, names, objects, &last, &r);
 	if (ask_how_much(&t, &r, understood))
 		return NULL;
 	const int other = is_other(&t), thing = find_again(talk, &last, &t, question);
-	if (other == t.n || thing >= 0)
-		return understand_part(talk, &last, &r,
+	if (other == t.n || thing >= 0) {
+		const struct meaning_set *set = understand_part(talk, &last, &r,
 			other == t.n ? "the other one" : question + t.word[thing].span.begin, understood);
+		return is_rest ? &talk->rest : set;
+	}
 	if (other && *r.other)
 		memcpy(r.name, r.other, sizeof r.name);
 	const int is = add_those(talk, 0, question + (other ? t.word[other].span.begin : 0), of_those);
-	return put_set(talk, is ? &talk->of : &talk->set, &r, of_those, understood);
-}
-
-int talk_is_of_looks(const struct talk *talk)
-{
-	struct tokens t;
-	int are = 0, is = 0;
-
-	tokens_take(&t, talk->question, NULL, NULL, 0);
-	for (int i = 0; i < t.n; i++) {
-		are |= talk_says_look(&t, i) && tokens_is(&t, i - 1, "are");
-		is |= tokens_class(&t, i) == CLOSED_PLACE;
-	}
-	return are && !is;
-}
-
-/* The one thing of a kind besides it, or else the likeliest other one. */
-static size_t find_other(const struct talk *talk, const struct answer_told *t, size_t thing)
-{
-	const size_t objects = t->asking->model.lifted.objects;
-	char *const *names = t->asking->model.lifted.names;
-	char own[CALLING_TEXT], words[CALLING_TEXT];
-	size_t other = ASKING_NONE;
-	int n = 0;
-
-	for (size_t o = 0; o < objects && talk->of.n; o++)
-		if (o < MEANING_SET && talk->of.is[o] && o != thing) {
-			other = o;
-			n++;
-		}
-	for (int is_noun = 0; is_noun < 2 && n != 1; is_noun++) {
-		talk_name_words(names[thing], is_noun, own);
-		n = 0;
-		for (size_t o = 0; o < objects; o++) {
-			talk_name_words(names[o], is_noun, words);
-			if (o == thing || strcmp(own, words) != 0)
-				continue;
-			other = o;
-			n++;
-		}
-	}
-	return n == 1 ? other : t->answer->runner_up;
-}
-
-/* The noun that all of a set's names end in, or else the one that the question asked for. */
-static void find_noun(struct meaning_set *set, const struct answer_told *t)
-{
-	const struct asking_answer *a = t->answer;
-	const struct parse_span about = t->asked.about;
-	char *const *names = t->asking->model.lifted.names, noun[CALLING_TEXT], other[CALLING_TEXT];
-
-	talk_name_words(names[a->things[0]], 1, noun);
-	for (size_t k = 1; k < a->count && *noun; k++) {
-		talk_name_words(names[a->things[k]], 1, other);
-		*noun = strcmp(noun, other) ? 0 : *noun;
-	}
-	snprintf(set->noun, sizeof set->noun, "%s", noun);
-	snprintf(other, sizeof other, "%.*s", about.end - about.begin, t->understood + about.begin);
-	if (!*noun)
-		question_noun(other, set->noun);
-}
-
-static void take_set(struct talk *talk, const struct answer_told *t, int is_within)
-{
-	const struct asking_answer *a = t->answer;
-
-	talk->is_several = a->count > 1;
-	if (a->count > 1) {
-		talk->set = (struct meaning_set){.n = a->count};
-		for (size_t k = 0; k < a->count; k++)
-			if (a->things[k] < MEANING_SET)
-				talk->set.is[a->things[k]] = 1;
-		find_noun(&talk->set, t);
-	}
-	if (!is_within)
-		talk->of = a->count > 1 ? talk->set : (struct meaning_set){0};
-}
-
-/* "the mug and the cup": of an answer of two, and of a question about two. */
-static void take_things(struct talk *talk, const struct answer_told *t, int is_within)
-{
-	const struct asking_answer *a = t->answer;
-	const int kind = t->asked.kind;
-
-	*talk->things = 0;
-	if (kind == QUESTION_WHETHER || kind == QUESTION_MORE || kind == QUESTION_COMPARE) {
-		const char *second = t->asked.text[1];
-		const char *at = kind == QUESTION_WHETHER ? strstr(second, " the ") : second;
-		const size_t length = strlen(t->asked.text[0]);
-		if (kind == QUESTION_WHETHER && !strncmp(second, t->asked.text[0], length))
-			at = strstr(second + length, " the ");
-		if (at && length + strlen(at) + 8 < sizeof talk->things)
-			snprintf(talk->things, CALLING_TEXT, "%.100s and %.100s", t->asked.text[0],
-				at + (*at == ' '));
-		if (!is_within)
-			talk->set = talk->of = (struct meaning_set){0};
-		return;
-	}
-	char *const *names = t->asking->model.lifted.names;
-	if (a->count == 2)
-		snprintf(talk->things, CALLING_TEXT, "the %.100s and the %.100s", names[a->things[0]],
-			names[a->things[1]]);
-	take_set(talk, t, is_within);
-}
-
-void talk_take(struct talk *talk, const struct answer_told *t, int is_within)
-{
-	const struct asking_answer *a = t->answer;
-
-	if (!a->count)
-		return;
-	const size_t thing = a->things[0], before[2] = {talk->thing, talk->other};
-	const int was_unsure = talk->is_unsure;
-	talk->thing = thing;
-	talk->is_unsure = t->is_unsure;
-	talk->other = a->count == 2	   ? a->things[1]
-		      : t->is_unsure	   ? a->runner_up
-		      : !was_unsure	   ? find_other(talk, t, thing)
-		      : thing == before[0] ? before[1]
-		      : thing == before[1] ? before[0]
-					   : find_other(talk, t, thing);
-	take_things(talk, t, is_within || (*talk->things && strstr(t->understood, talk->things)));
-	memcpy(talk->question, t->understood, sizeof talk->question);
+	const struct meaning_set *set = put_set(talk, is ? &talk->of : &talk->set, &r, of_those, understood);
+	return is_rest ? &talk->rest : set;
 }

@@ -28,16 +28,17 @@ static int is_named_before(const struct tokens *t, int i, struct parse_span *of)
 {
 	static const unsigned clauses = 1U << CLOSED_WITH | 1U << CLOSED_HAVE | 1U << CLOSED_RELATIVE |
 					1U << CLOSED_NEGATION | 1U << CLOSED_CONJUNCTION;
-	int is_definite = 0, is = 0, begin = 0, is_clause = 0;
+	int is_definite = 0, is_the = 0, is = 0, begin = 0, is_clause = 0;
 
 	*of = (struct parse_span){0};
 	for (int k = 0; k < i; k++) {
 		const int class = tokens_class(t, k);
 		is_clause |= is && class >= 0 && clauses >> class & 1;
-		if (is && t->word[k].before && !of->end)
+		if (is && t->word[k].before && !of->end && is_the)
 			*of = (struct parse_span){t->word[begin].span.begin, t->word[k - 1].span.end};
-		if (!is && class == CLOSED_DETERMINER) {
+		if (!is && (class == CLOSED_DETERMINER || tokens_is(t, k, "which|many"))) {
 			is_definite = 1;
+			is_the = class == CLOSED_DETERMINER;
 			begin = k;
 		} else if ((class < 0 || tokens_is(t, k, "one")) && is_definite) {
 			is = 1;
@@ -46,7 +47,7 @@ static int is_named_before(const struct tokens *t, int i, struct parse_span *of)
 			is_definite = 0;
 		}
 	}
-	if (is && t->word[i].before && !of->end)
+	if (is && t->word[i].before && !of->end && is_the)
 		*of = (struct parse_span){t->word[begin].span.begin, t->word[i - 1].span.end};
 	return is && (is_clause || of->end);
 }
@@ -180,6 +181,59 @@ unsigned talk_put_pointed(const struct referents *r, const char *question, char 
 	if (n < QUESTION_TEXT)
 		snprintf(understood + n, QUESTION_TEXT - n, "%s", question + from);
 	return to;
+}
+
+/* "how many don't?", "which ones aren't?": what it asks for of the others, with a %s for them; NULL. */
+static const char *find_denied(const struct tokens *t)
+{
+	static const unsigned verbs = 1U << CLOSED_BE | 1U << CLOSED_HAVE | 1U << CLOSED_AUXILIARY;
+	int i = tokens_is(t, 0, "and|but|so");
+	const int is_many = tokens_is(t, i, "how") && tokens_is(t, i + 1, "many");
+
+	if (!is_many && !tokens_is(t, i, "which|what"))
+		return NULL;
+	i += is_many ? 2 : 1 + tokens_is(t, i + 1, "one|ones");
+	i += 2 * (tokens_is(t, i, "of") && tokens_is(t, i + 1, "them|those|these"));
+	if (i + 2 != t->n || tokens_class(t, i) < 0 || !(verbs >> tokens_class(t, i) & 1) ||
+		!tokens_is(t, i + 1, "not|n't"))
+		return NULL;
+	return is_many ? "how many %s%s are there" : "the %s%s";
+}
+
+/* "the rest", "the others", "the remaining two of them": how many words from word i on are the whole of it.
+ */
+static int rest_length(const struct tokens *t, int i)
+{
+	const int is_more =
+		tokens_is(t, i + 1, "other|remaining") && tokens_is(t, i + 2, "ones|two|three|four");
+
+	if (!tokens_is(t, i, "the") || (!is_more && !tokens_is(t, i + 1, "rest|others")))
+		return 0;
+	i += 2 + is_more;
+	return 2 + is_more + 2 * (tokens_is(t, i, "of") && tokens_is(t, i + 1, "them|those|these"));
+}
+
+int talk_put_rest(const struct meaning_set *rest, const char *question, char to[QUESTION_TEXT])
+{
+	const char *noun = *rest->noun ? rest->noun : "thing",
+		   *plural = rest->n > 1 ? talk_plural_end(noun) : "";
+	struct tokens t;
+	int i = 0;
+
+	tokens_take(&t, question, NULL, NULL, 0);
+	snprintf(to, QUESTION_TEXT, "%s", question);
+	const char *denied = rest->n ? find_denied(&t) : NULL;
+	if (denied) {
+		snprintf(to, QUESTION_TEXT, denied, noun, plural);
+		return 1;
+	}
+	while (i < t.n && !rest_length(&t, i))
+		i++;
+	if (i == t.n || !rest->n)
+		return 0;
+	snprintf(to, QUESTION_TEXT, "%.*sthe %s%s%s", t.word[i].span.begin, question, noun, plural,
+		question + t.word[i + rest_length(&t, i) - 1].span.end);
+	return 1;
 }
 
 int talk_points(const char *question)

@@ -16,6 +16,10 @@ enum { TO_THINGS = 1, TO_NOUN = 2 };
 /* The question with what its words point back to in their place. Returns what they point to. */
 unsigned talk_put_pointed(const struct referents *r, const char *question, char understood[QUESTION_TEXT]);
 
+/* The question with the rest of what was spoken of in place of words for that: "the others", "how many
+ * don't?". Returns whether it has such words. */
+int talk_put_rest(const struct meaning_set *rest, const char *question, char to[QUESTION_TEXT]);
+
 /* The words of a name but for numbers; with is_noun the last of them alone. */
 void talk_name_words(const char *name, int is_noun, char words[CALLING_TEXT]);
 

@@ -16,8 +16,8 @@ static const struct {
 };
 
 static const char *const names[QUESTION_KINDS] = {"which", "list", "number", "colour", "look", "distance",
-	"height", "width", "size", "compare", "more", "either", "there", "whether", "set", "when", "then",
-	"speed"};
+	"height", "width", "size", "compare", "more", "either", "there", "whether", "set", "tally", "even",
+	"majority", "surplus", "when", "then", "speed"};
 
 static const char *const class_names[CLOSED_CLASSES] = {
 	[CLOSED_BE] = "be", [CLOSED_AUXILIARY] = "do", [CLOSED_PRONOUN] = "pronoun", [CLOSED_HAVE] = "have"};
@@ -115,7 +115,7 @@ static int is_idle(const struct tokens *t, int i)
 		"tell|list|name|enumerate|describe|show|say|know|wonder|give|measure|compute|calculate|ok|hey|hi|hello|and|so|want|like|to|"
 		"if|here|there|now|then|around|about|in|total|altogether|roughly|approximately|exactly|"
 		"need|find|out|see|check|just|well|sorry|excuse|thanks|whether|or|estimate|guess|work|figure|"
-		"maybe|perhaps|by";
+		"maybe|perhaps|by|together|combined";
 	const int class = tokens_class(t, i);
 
 	return (class >= 0 && idle >> class & 1) || tokens_is(t, i, words);
@@ -203,6 +203,9 @@ void question_noun(const char *phrase, char noun[TOKEN_LENGTH])
 		i++;
 	for (i = i < t.n ? i + 1 : 0; i < t.n; i++) {
 		const int class = tokens_class(&t, i);
+		if (class < 0 && colour_word(t.word[i].text) >= 0 &&
+			tokens_class(&t, i + 1) == CLOSED_GENERIC)
+			continue;
 		if (class < 0 && (*t.word[i].text < '0' || *t.word[i].text > '9'))
 			snprintf(noun, TOKEN_LENGTH, "%s", t.word[i].lemma);
 		else if (*noun ||
@@ -257,6 +260,10 @@ static void take(struct question_asked *q, size_t row, const struct matching *m,
 	if (strchr(rows[row].said, '#'))
 		q->least = (tokens_is(m->tokens, word.begin, "one") ? 1 : closed_words[closed].value) +
 			   (strstr(rows[row].said, "more") != NULL);
+	if (q->kind == QUESTION_TALLY)
+		q->least = !strstr(rows[row].said, "enough");
+	if (q->kind == QUESTION_MAJORITY)
+		q->least = strstr(rows[row].said, "fewer") ? -1 : 1;
 	const struct capture about = m->of[m->of[CAPTURE_A].end ? CAPTURE_A : CAPTURE_B];
 	if (about.end)
 		q->about = (struct parse_span){
@@ -279,6 +286,9 @@ static int filler_length(const struct tokens *t, int i)
 
 	if (tokens_class(t, i) == CLOSED_AUXILIARY && tokens_is(t, i + 1, "you") && tokens_is(t, i + 2, say))
 		return 3;
+	if (!i && tokens_is(t, 0, "is") && tokens_is(t, 1, "it") &&
+		tokens_is(t, 2, "true|right|correct|so") && tokens_is(t, 3, "that"))
+		return 4;
 	return tokens_is(t, i, about);
 }
 

@@ -21,6 +21,10 @@ enum question_kind {
 	QUESTION_THERE,	   /* whether it is there */
 	QUESTION_WHETHER,  /* whether the first, which is there, is the second */
 	QUESTION_SET,	   /* what stands in a relation: one thing, or where that is in doubt all that do */
+	QUESTION_TALLY,	   /* whether there are more of the first than of the second */
+	QUESTION_EVEN,	   /* whether there are as many of the first as of the second */
+	QUESTION_MAJORITY, /* of which of two there are more */
+	QUESTION_SURPLUS,  /* how many more there are of the first than of the second */
 	QUESTION_WHEN,	   /* when a thing moves */
 	QUESTION_THEN,	   /* where it is at the end, or was at the start */
 	QUESTION_SPEED,	   /* how fast it is */
@@ -33,7 +37,8 @@ struct question_asked {
 	enum question_kind kind;
 	int relation; /* enum parse_relation of the word of size or place that asks ("tall"), or that a place
 			 begins with ("on the tray"); -1 where there is none */
-	int least;    /* of QUESTION_THERE: how many have to be there; 0: any */
+	int least;    /* of QUESTION_THERE: how many have to be there, 0: any; of QUESTION_TALLY: by how many
+			 there have to be more; of QUESTION_MAJORITY: -1 where it asks for fewer */
 	char text[3][QUESTION_TEXT]; /* what to ask for; "" nothing. The third: what two are compared by */
 	struct parse_span about;     /* of the question: the thing that it asks about; empty: not known */
 };

@@ -172,6 +172,23 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 	[ "$status" = 1 ]
 }
 
+@test "of two kinds of things: of which there are more, and how many" {
+	a=$(sed -n 1p things)
+	[ "$(ask run "are there more things than ${a##* }s?" | cut -d: -f1)" = "yes, three to one" ]
+	[ "$(kind "do you see fewer things than ${a##* }s?" .yes)" = false ]
+	[ "$(kind "is the number of things the same as that of ${a##* }s?" .yes)" = false ]
+	[ "$(kind "are there as many sofas as ${a##* }s?" '[.yes, .value] | join(" ")')" = "false none to one" ]
+	[ "$(kind "how many more things than ${a##* }s are there?" '[.number, .value] | join(" ")')" = "2 two more" ]
+	[ "$(kind "which are there fewer of, things or ${a##* }s?" .value)" = "${a##* }s, one to three" ]
+}
+
+@test "the others of a kind, however they are asked for" {
+	a=$(sed -n 1p things)
+	for others in "and how many aren't?" "how many of the rest are there?" "how many of the others are there?"; do
+		[ "$(printf '%s\n' "how many things are ${a%% *}?" "$others" "name them" | ask --json run | jq -sc --arg a "$a" 'map(.number // (.things | length))')" = "[1,2,2]" ]
+	done
+}
+
 @test "what points back within another thing, and a 'that' that begins a clause" {
 	a=$(sed -n 1p things)
 	printf '%s\n' "where is the $a?" "and the one next to that?" "everything that is red" "how many of those are red?" | ask --json run >said || [ $? = 1 ]

@@ -40,6 +40,15 @@ static void kinds(void)
 	is("are there more than two mugs?", QUESTION_THERE, "all mugs", "");
 	is("what else is red except the mugs?", QUESTION_SET, "everything that is red except the mugs", "");
 	is("is there a mug larger than the jug?", QUESTION_THERE, "a mug that is larger than the jug", "");
+	is("are there more mugs than jugs?", QUESTION_TALLY, "all mugs", "all jugs");
+	is("do you see fewer mugs than jugs", QUESTION_TALLY, "all jugs", "all mugs");
+	is("is it true that there are as many mugs as red jugs?", QUESTION_EVEN, "all mugs", "all red jugs");
+	is("is the number of mugs the same as that of jugs?", QUESTION_EVEN, "all mugs", "all jugs");
+	is("what are there more of, mugs or jugs?", QUESTION_MAJORITY, "all mugs", "all jugs");
+	is("how many more mugs are there than jugs?", QUESTION_SURPLUS, "all mugs", "all jugs");
+	is("how many mugs have nothing on top?", QUESTION_NUMBER, "mugs that have nothing on top", "");
+	is("which of the mugs are red?", QUESTION_SET, "the mugs that are red", "");
+	is("how much taller than the jug is the mug?", QUESTION_COMPARE, "the mug", "the jug");
 	is("which is taller: the mug or the jug?", QUESTION_COMPARE, "the mug", "the jug");
 }
 
@@ -69,6 +78,8 @@ static void words(void)
 	CHECK(question_read(&q, "which is nearer to the jug: a or b", 0) && !strcmp(q.text[2], "the jug"),
 		"'%s'", q.text[2]);
 	CHECK(question_read(&q, "which is nearer to us: a or b", 0) && !*q.text[2], "'%s'", q.text[2]);
+	CHECK(question_read(&q, "are there enough mugs for every jug", 0) && !q.least, "%d", q.least);
+	CHECK(question_read(&q, "are there fewer mugs or jugs", 0) && q.least == -1, "%d", q.least);
 	CHECK(question_read(&q, "the mug", 0) && q.relation == -1, "%d", q.relation);
 	memset(long_text, 'x', sizeof long_text);
 	memcpy(long_text, "how tall is ", 12);

@@ -1,0 +1,64 @@
+/* Answers about the numbers of two kinds of things: whether there are more of one, as many, and how many
+ * more. */
+#include "cmd/ask/answering.h"
+
+#include "base/mem.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* Adds what is not there yet. */
+static void add_things(struct asking_answer *to, const struct asking_answer *more)
+{
+	for (size_t k = 0; k < more->count; k++) {
+		size_t i = 0;
+		while (i < to->count && to->things[i] != more->things[k])
+			i++;
+		to->probability[more->things[k]] = more->probability[more->things[k]];
+		to->things[i] = more->things[k];
+		to->count += i == to->count;
+	}
+}
+
+/* "two to one", "three each" */
+static void say_numbers(struct answer_told *t, size_t first, size_t second)
+{
+	answering_say_number(t, first);
+	if (first == second) {
+		answering_say(t, " each");
+		return;
+	}
+	answering_say(t, " to ");
+	answering_say_number(t, second);
+}
+
+/* "all the mugs" as it was asked: "the mugs". */
+static const char *asked_for(const char *text)
+{
+	return strncmp(text, "all ", 4) ? text : text + 4;
+}
+
+int answering_counts(struct answer_told *t, struct asking_answer *found, struct asking *a,
+	const struct report *to, struct err *e)
+{
+	SCOPED_BY(asking_answer_free) struct asking_answer second = {0};
+	const struct question_asked *q = &t->asked;
+
+	if (answering_all(t, q->text[0], found, a, to, e) || answering_all(t, q->text[1], &second, a, to, e))
+		return -1;
+	const size_t n = found->count, m = second.count;
+	t->number = (long)n - (long)m;
+	t->is_yes = q->kind == QUESTION_TALLY ? t->number >= q->least : !t->number;
+	if (q->kind == QUESTION_SURPLUS) {
+		answering_say_number(t, (size_t)labs(t->number));
+		answering_say(t, t->number < 0 ? " fewer" : " more");
+	} else if (q->kind == QUESTION_MAJORITY) {
+		const int is_second = t->number * q->least < 0;
+		answering_say(t, "%.100s, ", t->number ? asked_for(q->text[is_second]) : "as many");
+		say_numbers(t, is_second ? m : n, is_second ? n : m);
+	} else {
+		say_numbers(t, n, m);
+	}
+	add_things(found, &second);
+	return 0;
+}
