@@ -1,11 +1,30 @@
 /* Answers about the numbers of two kinds of things: whether there are more of one, as many, and how many
  * more. */
 #include "cmd/ask/answering.h"
+#include "cmd/ask/talk_words.h"
 
 #include "base/mem.h"
 
 #include <stdlib.h>
 #include <string.h>
+
+size_t answering_count_kinds(const struct answer_told *t)
+{
+	char **names = t->asking->model.lifted.names, noun[CALLING_TEXT], other[CALLING_TEXT];
+	const size_t *things = t->answer->things;
+	size_t kinds = 0;
+
+	for (size_t k = 0, i; k < t->answer->count; k++) {
+		talk_name_words(names[things[k]], 1, noun);
+		for (i = 0; i < k; i++) {
+			talk_name_words(names[things[i]], 1, other);
+			if (!strcmp(noun, other))
+				break;
+		}
+		kinds += i == k;
+	}
+	return kinds;
+}
 
 /* Adds what is not there yet. */
 static void add_things(struct asking_answer *to, const struct asking_answer *more)

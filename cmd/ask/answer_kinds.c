@@ -323,9 +323,9 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 	t->is_yes |= t->asked.kind == QUESTION_THERE && found->count && (int)found->count >= t->asked.least;
 	take_motion(t, found);
 	if (kind == QUESTION_NUMBER || kind == QUESTION_LIST)
-		t->number = (long)found->count;
+		t->number = (long)(t->asked.least ? answering_count_kinds(t) : found->count);
 	if (kind == QUESTION_NUMBER)
-		answering_say_number(t, found->count);
+		answering_say_number(t, (size_t)t->number);
 	if (kind >= QUESTION_HEIGHT && kind <= QUESTION_SIZE)
 		answering_need_boxes(t, found);
 	if (!found->count)

@@ -215,11 +215,12 @@ int answer_put_words(const struct answer_told *t, FILE *out, struct err *e)
 	if (a->count && a->is_guess)
 		fputs("a guess: ", out);
 	const char *yes = t->is_yes ? "yes" : "no";
-	if (is_yes_or_no(t) && *t->value)
+	const int is_counted = t->asked.kind == QUESTION_TALLY || t->asked.kind == QUESTION_EVEN;
+	if (is_counted)
 		fprintf(out, "%s, ", yes);
 	if (t->is_unsure)
 		put_choice(t, out);
-	else if (is_yes_or_no(t) && !*t->value)
+	else if (is_yes_or_no(t) && !is_counted)
 		put_value(t, yes, out);
 	else if (*t->value)
 		put_value(t, t->value, out);

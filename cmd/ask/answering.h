@@ -13,6 +13,9 @@ void answering_say_number(struct answer_told *t, size_t n);
 int answering_all(const struct answer_told *t, const char *phrase, struct asking_answer *found,
 	struct asking *a, const struct report *to, struct err *e);
 
+/* How many nouns the things' names have. */
+size_t answering_count_kinds(const struct answer_told *t);
+
 /* Of how many there are of two kinds of things, t->asked's: t->is_yes, t->number and t->value, and the things
  * as `found`. Returns 0, or -1 with *e set. */
 int answering_counts(struct answer_told *t, struct asking_answer *found, struct asking *a,

@@ -53,6 +53,9 @@ static int is_choice(const struct tokens *t, int at, const char *choice, size_t 
 		return class == CLOSED_NUMBER || tokens_is(t, at, "one");
 	if (length == 1 && *choice == '%')
 		return class == CLOSED_ATTRIBUTE || colour_word(t->word[at].text) >= 0;
+	if (length == 1 && *choice == '~')
+		return class < 0 && token_ends(t->word[at].text, "s", 1) &&
+		       strcmp(t->word[at].text, t->word[at].lemma) != 0;
 	if (*choice == '=')
 		return class >= 0 && class_names[class] && strlen(class_names[class]) == length - 1 &&
 		       !strncmp(class_names[class], choice + 1, length - 1);
@@ -162,7 +165,7 @@ static int match(struct matching *m, const char *said, int at)
 	const int is_free = said[length - 1] == '?';
 	if (is_element(m->tokens, at, said, length - (size_t)is_free)) {
 		const struct capture before = m->of[CAPTURE_WORD];
-		if (strchr("$%#", *said))
+		if (strchr("$%#~", *said))
 			m->of[CAPTURE_WORD] = (struct capture){at, at + 1};
 		if (match(m, rest, at + 1))
 			return 1;
@@ -260,6 +263,8 @@ static void take(struct question_asked *q, size_t row, const struct matching *m,
 	if (strchr(rows[row].said, '#'))
 		q->least = (tokens_is(m->tokens, word.begin, "one") ? 1 : closed_words[closed].value) +
 			   (strstr(rows[row].said, "more") != NULL);
+	if (q->kind == QUESTION_NUMBER)
+		q->least = strstr(rows[row].said, "kinds") != NULL;
 	if (q->kind == QUESTION_TALLY)
 		q->least = !strstr(rows[row].said, "enough");
 	if (q->kind == QUESTION_MAJORITY)

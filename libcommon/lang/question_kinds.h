@@ -37,8 +37,9 @@ struct question_asked {
 	enum question_kind kind;
 	int relation; /* enum parse_relation of the word of size or place that asks ("tall"), or that a place
 			 begins with ("on the tray"); -1 where there is none */
-	int least;    /* of QUESTION_THERE: how many have to be there, 0: any; of QUESTION_TALLY: by how many
-			 there have to be more; of QUESTION_MAJORITY: -1 where it asks for fewer */
+	int least;    /* of QUESTION_NUMBER: 1 where kinds of things are counted; of QUESTION_THERE: how many
+			 have to be there, 0: any; of QUESTION_TALLY: by how many    there have to be more; of
+			 QUESTION_MAJORITY: -1 where it asks for fewer */
 	char text[3][QUESTION_TEXT]; /* what to ask for; "" nothing. The third: what two are compared by */
 	struct parse_span about;     /* of the question: the thing that it asks about; empty: not known */
 };
