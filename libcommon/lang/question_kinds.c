@@ -311,7 +311,7 @@ static void leave_fillers(struct tokens *t)
 	t->n = n;
 }
 
-int question_read(struct question_asked *q, const char *text, int way)
+static int find_kind(struct question_asked *q, const char *text, int way)
 {
 	struct tokens t;
 	struct matching from = {.text = text, .tokens = &t};
@@ -337,6 +337,25 @@ int question_read(struct question_asked *q, const char *text, int way)
 		}
 	snprintf(q->text[0], sizeof q->text[0], "%s", text);
 	return !way;
+}
+
+int question_read(struct question_asked *q, const char *text, int way)
+{
+	/* a question is read several times while it is answered */
+	static _Thread_local struct question_asked last;
+	static _Thread_local char last_text[QUESTION_TEXT];
+	const size_t n = strlen(text);
+
+	if (!way && n && !strcmp(text, last_text)) {
+		*q = last;
+		return 1;
+	}
+	const int found = find_kind(q, text, way);
+	if (!way && n < sizeof last_text) {
+		memcpy(last_text, text, n + 1);
+		last = *q;
+	}
+	return found;
 }
 
 int question_is_any(const char *phrase)

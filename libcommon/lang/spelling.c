@@ -1,5 +1,6 @@
 #include "lang/spelling.h"
 
+#include "base/hash.h"
 #include "lang/closed.h"
 #include "lang/colours.h"
 #include "lang/compared.h"
@@ -113,17 +114,40 @@ static int find_right(const struct suspect *s, const char *const *known, int kno
 	return 0;
 }
 
-int spelling_repair(const char *word, const char *const *known, int known_count, char *right)
+/* What was found for words lately, where none were given: that takes a walk through all words there are. */
+struct found {
+	char word[SPELLING_LENGTH], right[SPELLING_LENGTH];
+	int is_slip;
+};
+
+static int find_repair(const char *word, const char *const *known, int known_count, char *right)
 {
 	char lemma[TOKEN_LENGTH];
 	struct suspect s = {word, 6, right};
 
-	if (strlen(word) < 3 || strlen(word) > SPELLING_LENGTH - 3 || isdigit((unsigned char)word[0]))
-		return 0;
 	token_lemma(word, lemma);
 	if (is_known(word, lemma, known, known_count))
 		return 0;
 	if (wordnet_is_there() && !wordnet_is_noun(lemma))
 		s.least = 5;
 	return find_right(&s, known, known_count) && !wordnet_is_adjective(word); /* an adjective is none */
+}
+
+int spelling_repair(const char *word, const char *const *known, int known_count, char *right)
+{
+	static _Thread_local struct found lately[64];
+	const size_t n = strlen(word);
+
+	if (n < 3 || n > SPELLING_LENGTH - 3 || isdigit((unsigned char)word[0]))
+		return 0;
+	if (known_count)
+		return find_repair(word, known, known_count, right);
+	struct found *f = &lately[hash64(word, n, 0) % (sizeof lately / sizeof *lately)];
+	if (strcmp(f->word, word) != 0) {
+		memcpy(f->word, word, n + 1);
+		f->is_slip = find_repair(word, NULL, 0, f->right);
+	}
+	if (f->is_slip)
+		memcpy(right, f->right, strlen(f->right) + 1);
+	return f->is_slip;
 }

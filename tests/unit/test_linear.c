@@ -55,6 +55,8 @@ static void product_all_tiles(void)
 		fill(w, out * in, &r);
 		fill(bias, out, &r);
 		for (size_t i = 0; i < out * in; i++) {
+			if (i % 37 == 0) /* below normal halves, or 0 */
+				w[i] *= i % 2 ? 1e-5f : 0;
 			const uint16_t half = half_of_float(w[i]);
 			memcpy(halves + 1 + 2 * i, &half, sizeof half);
 			w64[i] = w[i] = half_to_float(half);
@@ -116,6 +118,8 @@ static void layers_of_halves(void)
 		fill(w, in * out, &r);
 		fill(bias, out, &r);
 		for (size_t i = 0; i < in * out; i++) {
+			if (i % 37 == 0) /* below normal halves, or 0 */
+				w[i] *= i % 2 ? 1e-5f : 0;
 			const uint16_t half = half_of_float(w[i]);
 			memcpy(halves + 1 + 2 * i, &half, sizeof half);
 			w64[i] = half_to_float(half);
