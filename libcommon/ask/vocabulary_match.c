@@ -59,11 +59,15 @@ static double knowledge_of_name(const struct vocabulary *v, const struct naming 
 
 int vocabulary_is_above(const struct vocabulary *v, const char *lemma, size_t object)
 {
-	struct wordnet_noun above;
+	const struct naming *head = &v->kinds[v->head_kinds[object]].naming,
+			    *content = &v->kinds[v->content_kinds[object]].naming;
+	struct naming above;
 
-	wordnet_find(&above, lemma);
-	return v->has_names && v->has_knowledge &&
-	       wordnet_is_above(&above, &v->kinds[v->head_kinds[object]].naming.noun);
+	if (!v->has_names || !v->has_knowledge)
+		return 0;
+	naming_of_word(&above, lemma);
+	return wordnet_is_above(&above.noun, &head->noun) || kinds_are_of(&above.kinds, &head->kinds) ||
+	       (kinds_listed("gathering", v->heads[object]) && wordnet_is_above(&above.noun, &content->noun));
 }
 
 int vocabulary_is_furniture(const struct vocabulary *v, size_t object)

@@ -18,17 +18,19 @@ static const char *first_line(void)
 	return p;
 }
 
-/* Whether a word is among those of a line. */
+/* In which field of nouns of a line a word is, from 1 on; 0: in none. */
 static int has(const char *line, const char *word)
 {
+	int field = 0;
+
 	for (const char *p = strchr(line, '\t'); *p && *p != '\n';) {
 		const char *w = word;
-		for (p++; *w && *w != ' ' && *w == *p; p++)
+		field += *p == '\t';
+		for (p++; *w && *p != ' ' && (*w == *p || (*w == ' ' && *p == '_')); p++)
 			w++;
-		if (!*w && (*p == ' ' || *p == '\n'))
-			return 1;
-		while (*p != ' ' && *p != '\n')
-			p++;
+		if (!*w && strchr(" \t\n", *p))
+			return field;
+		p += strcspn(p, " \t\n");
 	}
 	return 0;
 }
@@ -46,11 +48,11 @@ int kinds_next(long *at, char noun[KINDS_LENGTH])
 		return 0;
 	if (*at == 0 || p[-1] == '\n')
 		from = strchr(p, '\t') + 1;
-	const size_t n = strcspn(from, " \n");
+	const size_t n = strcspn(from, " \t\n");
 	memcpy(noun, from, n);
 	noun[n] = 0;
 	*at = from + n + 1 - (const char *)kinds_begin;
-	return 1;
+	return !n || memchr(noun, '_', n) ? kinds_next(at, noun) : 1;
 }
 
 int kinds_have(const char *lemma)
@@ -88,22 +90,33 @@ void kinds_find(struct kinds_lines *to, const char *lemma)
 {
 	int line = 0;
 
-	*to = (struct kinds_lines){{0}};
+	*to = (struct kinds_lines){{{0}}};
 	for (const char *p = first_line(); *p && line < KINDS_LINES; p = next_line(p), line++)
-		to->bits[line / 64] |= (uint64_t)has(p, lemma) << line % 64;
+		for (int f = has(p, lemma), i = 0; f && i < KINDS_FIELDS; i++)
+			to->bits[i][line / 64] |= (uint64_t)(!i || i == f) << line % 64;
 }
 
-double kinds_share(const struct kinds_lines *a, const struct kinds_lines *b)
+double kinds_share(const struct kinds_lines *word, const struct kinds_lines *known)
 {
-	const uint64_t both[] = {a->bits[0] & b->bits[0], a->bits[1] & b->bits[1]};
+	uint64_t both[KINDS_LINES / 64], any = 0;
 	double best = 0;
 	int line = 0;
 
-	if (!(both[0] | both[1]))
+	for (int i = 0; i < KINDS_LINES / 64; i++)
+		any |= both[i] = word->bits[0][i] & known->bits[1][i];
+	if (!any)
 		return 0;
 	for (const char *p = first_line(); *p && line < KINDS_LINES; p = next_line(p), line++) {
 		const double chance = both[line / 64] >> line % 64 & 1 ? strtod(p, NULL) : 0;
 		best = chance > best ? chance : best;
 	}
 	return best;
+}
+
+int kinds_are_of(const struct kinds_lines *word, const struct kinds_lines *known)
+{
+	for (int i = 0; i < KINDS_LINES / 64; i++)
+		if (word->bits[2][i] & known->bits[1][i])
+			return 1;
+	return 0;
 }

@@ -6,7 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { KINDS_LENGTH = 32 /* of the longest noun with its 0 */, KINDS_LINES = 128 /* at most */ };
+enum { KINDS_LENGTH = 32 /* of the longest noun with its 0 */, KINDS_LINES = 192 /* at most */ };
 
 /* Steps through all nouns: *at is 0 before the first. 0 after the last. */
 int kinds_next(long *at, char noun[KINDS_LENGTH]);
@@ -21,13 +21,18 @@ int kinds_listed(const char *list, const char *lemma);
  * *length bytes. NULL: it is for no such kind. */
 const char *kinds_has(const char *lemma, size_t *length);
 
-/* The lines that have a word: bit l of line l. */
+enum { KINDS_FIELDS = 3 };
+
+/* The lines that have a word, bit l of line l: in any field, in the first, and in the second. */
 struct kinds_lines {
-	uint64_t bits[KINDS_LINES / 64];
+	uint64_t bits[KINDS_FIELDS][KINDS_LINES / 64];
 };
 
 void kinds_find(struct kinds_lines *to, const char *lemma);
 
-/* The chance that what is called by one lemma is called by the other, as their group has it; 0 where they
- * share none. */
-double kinds_share(const struct kinds_lines *a, const struct kinds_lines *b);
+/* The chance that what is called `known` is called by the word, as a group of `known` has it; 0 where none
+ * has. */
+double kinds_share(const struct kinds_lines *word, const struct kinds_lines *known);
+
+/* Whether what is called `known` is of the sort that the word names: "clothes" of a jacket. */
+int kinds_are_of(const struct kinds_lines *word, const struct kinds_lines *known);

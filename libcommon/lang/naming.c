@@ -4,7 +4,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What is known is sometimes not what is said: of WordNet's synonyms, and of names in one line. */
+/* What is known is sometimes not what is said: of WordNet's synonyms, of names in one line, and of sorts. */
 static const double of_wordnet = 0.95, of_line = 0.85;
 
 static void find(struct naming *to, const char *lemma, void (*noun)(struct wordnet_noun *, const char *))
@@ -18,6 +18,12 @@ static void find(struct naming *to, const char *lemma, void (*noun)(struct wordn
 	to->lemma = lemma;
 	things_find(&to->things, lemma);
 	kinds_find(&to->kinds, lemma);
+	snprintf(joined + strlen(joined), sizeof joined - strlen(joined),
+		"s"); /* "clothes", whose lemma is no word */
+	if (!to->noun.n)
+		noun(&to->noun, joined);
+	if (!to->kinds.bits[0][0] && !to->kinds.bits[0][1] && !to->kinds.bits[0][2])
+		kinds_find(&to->kinds, joined);
 }
 
 void naming_of_word(struct naming *to, const char *lemma)
@@ -41,7 +47,8 @@ double naming_fits(const struct naming *word, const struct naming *known, int is
 
 	if (is_general)
 		return x;
-	return fmax(x, things_share(&word->things, &known->things)
-			       ? of_line
-			       : kinds_share(&word->kinds, &known->kinds));
+	return fmax(
+		x, things_share(&word->things, &known->things) || kinds_are_of(&word->kinds, &known->kinds)
+			   ? of_line
+			   : kinds_share(&word->kinds, &known->kinds));
 }
