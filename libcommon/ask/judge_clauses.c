@@ -2,6 +2,7 @@
 #include "ask/constants.h"
 #include "ask/judge_clauses.h"
 #include "ask/judge_words.h"
+#include "lang/closed.h"
 #include "lang/compared.h"
 #include "lang/finish.h"
 #include "places/relate.h"
@@ -258,7 +259,11 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 		judge_compared(m, c, counted_by(p, f, counts_along) == c ? f->ordinal : 1, fit, value);
 		return;
 	}
-	if (c->relation == PARSE_OTHER) {
+	if (judge_by_place(m, c, counted_by(p, f, counts_along) == c ? f->ordinal : 1, fit, value))
+		return;
+	/* what hangs and stands on nothing that is named is said to */
+	if (c->relation == PARSE_OTHER || (c->relation == PARSE_ON && !c->anchors.n && c->words.n &&
+						  closed_class_of(p, c->words.item[0]) == CLOSED_POSE)) {
 		judge_predicate(m, c, value);
 		return;
 	}
@@ -271,10 +276,18 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 		judge_part_colours(m, phrase, c, value);
 		return;
 	}
+	const int head = meaning_head_of(p, f);
+	/* "between the cup and the jar" is none of them, and roses in a vase may be what is called a vase
+	 * here */
+	for (size_t o = 0; o < n; o++)
+		value[o] = head < 0 && !f->noun.n ? value[o] * (1 - ANCHOR_UNLIKE * is_anchor(m, c, o))
+			   : head >= 0 && c->relation == PARSE_INSIDE
+				   ? fmax(value[o], OWN_HOLDER * is_anchor(m, c, o))
+				   : value[o];
 	judge_said(m, c, said);
 	/* nothing is beside what is not here: a denial of it is true, and of "all that is on the sill"
 	 * nothing is known */
-	const int is_all = f->count != PARSE_ONE && meaning_head_of(p, f) < 0;
+	const int is_all = f->count != PARSE_ONE && head < 0;
 	const double unknown = c->negated || is_all ? 0 : UNKNOWN_RELATION;
 	double *elsewhere = m->scratch + 8 * n;
 	find_elsewhere(m, c, fit, elsewhere);

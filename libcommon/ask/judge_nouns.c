@@ -1,6 +1,7 @@
 /* What the noun of a phrase says of each object, or the noun that it leaves out. */
 #include "ask/constants.h"
 #include "ask/judge_words.h"
+#include "lang/closed.h"
 #include "lang/colours.h"
 #include "lang/kinds.h"
 #include "lang/tokens.h"
@@ -48,6 +49,13 @@ static int is_said_of_something(struct meaning *m, int word, double *match)
 		return 0;
 	vocabulary_attribute(m->vocabulary, m->sentence, word, match);
 	return largest(match, objects_of(m)) > ATTRIBUTE_SAID;
+}
+
+/* "That are not light": no lamp, but a word that is said of things. */
+static int is_denied_look(const struct parse *p, const struct parse_phrase *f, int head)
+{
+	return f->noun.n == 1 && !f->attributes.n && wordnet_is_adjective(p->words[head].lemma) &&
+	       closed_class_of(p, head - 1) == CLOSED_NEGATION && !parse_word_is(p, head - 1, "no|without");
 }
 
 /* "The white gadget": a thing whose name is not said, and few things called so are called so here. */
@@ -146,6 +154,10 @@ void judge_noun(struct meaning *m, int phrase)
 	const int is_any = is_vague(&p->words[head]) || (is_shape(p, f, head) && largest(match, n) < 0.5);
 	for (size_t o = 0; o < n && is_any; o++)
 		match[o] = fmax(match[o], VAGUE_LEAST);
+	if (phrase && is_denied_look(p, f, head)) {
+		judge_attribute(m, phrase, head, ATTRIBUTE_SEVERAL);
+		return;
+	}
 	if (is_colour(p, head) && largest(match, n) < 0.5) {
 		judge_colour(m, phrase, head);
 		return;

@@ -3,6 +3,7 @@
 #include "ask/constants.h"
 #include "lang/colours.h"
 #include "lang/finish.h"
+#include "places/relate.h"
 
 #include <math.h>
 #include <string.h>
@@ -75,6 +76,11 @@ void judge_said(struct meaning *m, const struct parse_clause *c, double *said)
 		vocabulary_has(m->vocabulary, m->sentence, head, c->relation, match);
 		for (size_t o = 0; o < n; o++)
 			said[o] = fmax(said[o], match[o]);
+		if (c->relation != PARSE_NEAR)
+			continue;
+		vocabulary_at(m->vocabulary, m->sentence, head, match);
+		for (size_t o = 0; o < n; o++)
+			said[o] = fmax(said[o], SAID_WORTH * match[o]);
 	}
 }
 
@@ -107,4 +113,31 @@ double judge_predicate(struct meaning *m, const struct parse_clause *c, double *
 			   : c->negated ? fmin(value[o], 1)
 					: (PREDICATE_LEAST + value[o]) / (PREDICATE_LEAST + most);
 	return most;
+}
+
+int judge_by_place(
+	struct meaning *m, const struct parse_clause *c, int place, const double *fit, double *value)
+{
+	const struct parse *p = m->sentence->parse;
+	const struct arrangement *a = m->arrangement;
+	const int anchor = c->anchors.n == 1 ? c->anchors.item[0] : -1;
+	const int head = anchor < 0 ? -1 : meaning_head_of(p, &p->phrases[anchor]);
+	double *at = m->scratch + 6 * a->n, *key = m->scratch + 3 * a->n;
+
+	if ((c->relation != PARSE_NEAR && c->relation != PARSE_FAR) || c->degree == PARSE_PLAIN || head < 0 ||
+		m->known[anchor] >= 0.5 || p->phrases[anchor].viewer || meaning_is_scene(m, anchor))
+		return 0;
+	vocabulary_at(m->vocabulary, m->sentence, head, at);
+	if (largest(at, a->n) < 0.5)
+		return 0;
+	for (size_t o = 0; o < a->n; o++) {
+		double least = INFINITY;
+		for (size_t k = 0; k < a->n; k++)
+			if (at[k] >= 0.5 && a->objects[k].is_there)
+				least = fmin(
+					least, k == o ? 0 : pair_distance(&a->objects[o], &a->objects[k]));
+		key[o] = (c->relation == PARSE_FAR ? -least : least) / (PLACE_SOFT * a->spacing);
+	}
+	relate_rank_by(a, key, place, fit, value);
+	return 1;
 }

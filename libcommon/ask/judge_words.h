@@ -23,3 +23,9 @@ void judge_part_colours(struct meaning *m, int phrase, const struct parse_clause
 /* What a thing does, is for, or has: any word of it may be said of an object. Returns how far something is
  * known to be so. */
 double judge_predicate(struct meaning *m, const struct parse_clause *c, double *value);
+
+/* "The chair nearest to the sink", and a sink is no object: it is where the things are that are said to be at
+ * it. value (O): how far each is the place-th nearest, or farthest, of those that fit. Returns whether it is
+ * told so. */
+int judge_by_place(
+	struct meaning *m, const struct parse_clause *c, int place, const double *fit, double *value);

@@ -103,6 +103,10 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, int w,
 	enum parse_relation place, double *match);
 
+/* match (O) in [0,1]: that an object is said to be at what word w names: near it, on it, under it; by a
+ * training sentence, or by its name, as a "kitchen-side chair" is at the kitchen. */
+void vocabulary_at(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match);
+
 /* match (O): the cosine of the mean of a sentence's words that count (a char of each word) with the nouns
  * that training sentences call an object by, 0 where there is none: what the sentence is about. */
 void vocabulary_about(

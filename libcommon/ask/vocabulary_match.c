@@ -13,8 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Whether a word is a word of a name: 2 its last (no number) or all without gaps, 1 another. */
-static int is_in_name(const char *word, const char *name)
+int vocabulary_in_name(const char *word, const char *name)
 {
 	const size_t length = strlen(word);
 	const char *joined = word;
@@ -119,7 +118,7 @@ static int find_compound(const struct parse *p, int w, struct naming *to, char *
 /* Whether a word is said of an object: in its name, or of it in a sentence. */
 static int is_said_of(const struct vocabulary *v, const char *lemma, size_t object)
 {
-	if (v->has_names && is_in_name(lemma, v->lifted->names[object]))
+	if (v->has_names && vocabulary_in_name(lemma, v->lifted->names[object]))
 		return 1;
 	for (size_t i = 0; i < v->n; i++)
 		if (v->items[i].object == object && v->items[i].role <= VOCABULARY_ATTRIBUTE &&
@@ -194,7 +193,7 @@ void vocabulary_noun(struct vocabulary *v, const struct vocabulary_sentence *s, 
 	if (v->has_knowledge)
 		naming_of_word(&known, word->lemma);
 	for (size_t o = 0; o < objects; o++) {
-		const int named = v->has_names ? is_in_name(word->lemma, l->names[o]) : 0;
+		const int named = v->has_names ? vocabulary_in_name(word->lemma, l->names[o]) : 0;
 		match[o] = named == 2;
 		is_name |= named == 2 && v->of_several;
 		if (v->has_names && named < 2)
@@ -264,7 +263,7 @@ void vocabulary_attribute(struct vocabulary *v, const struct vocabulary_sentence
 
 	vocabulary_word_vector(v, word, s->vectors, v->word);
 	for (size_t o = 0; o < l->objects; o++)
-		match[o] = v->has_names && is_in_name(word->lemma, l->names[o]) ? 1 : 0;
+		match[o] = v->has_names && vocabulary_in_name(word->lemma, l->names[o]) ? 1 : 0;
 	for (size_t i = 0; i < v->n; i++) {
 		const struct vocabulary_item *item = &v->items[i];
 		double *to = &match[item->object], x;

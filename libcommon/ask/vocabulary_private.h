@@ -23,3 +23,6 @@ static inline char vocabulary_lower(char c)
 {
 	return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
+
+/* Whether a word is a word of a name: 2 its last (no number) or all without gaps, 1 another. */
+int vocabulary_in_name(const char *word, const char *name);

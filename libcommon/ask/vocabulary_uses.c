@@ -106,3 +106,22 @@ size_t vocabulary_whole(
 	}
 	return same;
 }
+
+void vocabulary_at(struct vocabulary *v, const struct vocabulary_sentence *s, int w, double *match)
+{
+	const unsigned at = 1U << PARSE_NEAR | 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_ABOVE |
+			    1U << PARSE_BELOW | 1U << PARSE_FRONT | 1U << PARSE_BEHIND | 1U << PARSE_LEFT |
+			    1U << PARSE_RIGHT | 1U << PARSE_BETWEEN;
+	const char *lemma = s->parse->words[w].lemma;
+
+	for (size_t o = 0; o < v->lifted->objects; o++)
+		match[o] = v->has_names && v->has_said &&
+			   vocabulary_in_name(lemma, v->lifted->names[o]) == 1 && wordnet_is_noun(lemma) &&
+			   !wordnet_is_adjective(lemma);
+	for (size_t i = 0; i < v->n && v->has_said; i++) {
+		const struct vocabulary_item *item = &v->items[i];
+		if (item->role == VOCABULARY_ANCHOR && at >> item->relation & 1 &&
+			!strcmp(lemma, item->lemma))
+			match[item->object] = 1;
+	}
+}

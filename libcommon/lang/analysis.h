@@ -48,6 +48,9 @@ void analysis_repair(struct analysis *a);
 /* The rules of lang/rules.def that are of an analysis, but those that are left out. */
 void analysis_apply_rules(struct analysis *a, const struct tokens *t, unsigned without);
 
+/* The rule `from`, which parse_build applies, as no marks tell it. */
+void analysis_take_from(struct analysis *a, const struct tokens *t);
+
 /* Whether there is such a word and it is a predicate. */
 int analysis_is_predicate(const struct analysis *a, int i);
 /* Whether a word is the predicate of an anchor. */

@@ -282,6 +282,33 @@ static void take_doubled(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* "The second chair from the window", "the first one you meet when you come from the door": by how near it
+ * is. */
+void analysis_take_from(struct analysis *a, const struct tokens *t)
+{
+	enum { REACH = 9 };
+	int i = 0, j, noun;
+
+	while (i < t->n && tokens_class(t, i) != CLOSED_ORDINAL && !tokens_is(t, i, "number"))
+		i++;
+	for (j = i + 1; j < t->n && j <= i + REACH && (!t->word[j].before || tokens_class(t, j) < 0); j++) {
+		if (!tokens_is(t, j, "from") ||
+			tokens_is(t, j + 1, "left|right|front|back|top|bottom|behind|above|below|here|there"))
+			continue;
+		const int first = tokens_class(t, j + 1) == CLOSED_DETERMINER ? j + 2 : j + 1;
+		noun = noun_of_run(a, t, first);
+		if (noun < 0 || tokens_class(t, first) == CLOSED_PLACE ||
+			tokens_is(t, noun, "side|end|hand|direction") || a->word[noun].role != ROLE_NONE)
+			return;
+		for (int k = j + 1; k < noun; k++)
+			if (k >= first && !role_is_phrase(a->word[k].role))
+				a->word[k] = (struct analysis_word){.role = ROLE_NAME, .head = noun};
+		a->word[j] = (struct analysis_word){ROLE_PREDICATE, ROOT, PARSE_NEAR, 0};
+		a->word[noun] = (struct analysis_word){.role = ROLE_ANCHOR, .head = j};
+		return;
+	}
+}
+
 void analysis_apply_rules(struct analysis *a, const struct tokens *t, unsigned without)
 {
 	if (rule_counts(without, RULE_isnt))

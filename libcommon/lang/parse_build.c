@@ -153,7 +153,8 @@ static enum parse_degree degree_of(const struct build *b, int i)
 	if (r == PARSE_NEAR && b->a->word[i].negated && c == CLOSED_PLACE &&
 		closed_words[t->word[i].closed].relation == PARSE_FAR)
 		return PARSE_PLAIN;
-	if (tokens_is(t, i, most))
+	if (tokens_is(t, i, most) ||
+		(r == PARSE_NEAR && tokens_is(t, i, "from"))) /* "second from the door" */
 		return PARSE_MOST;
 	if (r == PARSE_OTHER)
 		return compared_at(t, i);
@@ -276,7 +277,8 @@ static int add_clauses(struct build *b)
 		return -1;
 	for (int i = 0; i < b->t->n; i++)
 		if (b->a->word[i].role == ROLE_PREDICATE && i != b->from && !build_is_way(b->t, i) &&
-			add_predicate(b, i))
+			!tokens_is(b->t, i, "room|scene|picture|photo") &&
+			add_predicate(b, i)) /* "in the room" */
 			return -1;
 	return 0;
 }
@@ -335,8 +337,11 @@ static void find_view(struct build *b)
 int parse_build(
 	struct parse *p, const struct analysis *a, const struct tokens *t, unsigned without, struct err *e)
 {
-	struct build b = {.p = p, .a = a, .t = t, .e = e, .from = -1};
+	struct analysis own = *a;
+	struct build b = {.p = p, .a = &own, .t = t, .e = e, .from = -1};
 
+	if (rule_counts(without, RULE_from))
+		analysis_take_from(&own, t);
 	*p = (struct parse){.view_phrase = -1};
 	if (add_words(&b) || add_phrases(&b) || fill_phrases(&b)) {
 		parse_free(p);

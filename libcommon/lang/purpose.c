@@ -3,6 +3,7 @@
 #include "lang/closed.h"
 #include "lang/colours.h"
 #include "lang/tokens.h"
+#include "lang/wordnet.h"
 
 #include <string.h>
 
@@ -97,9 +98,26 @@ static int asks_for(const struct parse *p)
 	       next != CLOSED_POSE && next != CLOSED_PLACE && next != CLOSED_HAVE && next != -1;
 }
 
+/* "Watch a film on it", "give these to a friend": what is to be done with what is meant. */
+static int says_to_do(const struct parse *p)
+{
+	const int verb = first_word(p);
+
+	if (!is_open(p, verb) || !wordnet_is_verb(p->words[verb].lemma))
+		return 0;
+	for (int i = verb + 1; i < p->word_count; i++)
+		if (parse_word_is(p, i, "it|them") || (parse_word_is(p, i, "this|these|that|those") &&
+							      closed_class_of(p, i + 1) != CLOSED_CLASSES &&
+							      closed_class_of(p, i + 1) != CLOSED_GENERIC &&
+							      closed_class_of(p, i + 1) != CLOSED_ATTRIBUTE &&
+							      closed_class_of(p, i + 1) != CLOSED_SIZE))
+			return 1;
+	return 0;
+}
+
 int purpose_is_said(const struct parse *p)
 {
-	return says_doing(p) || says_for(p) || asks_for(p);
+	return says_doing(p) || says_for(p) || asks_for(p) || says_to_do(p);
 }
 
 int purpose_is_content(const struct parse *p, int word)

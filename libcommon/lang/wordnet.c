@@ -161,8 +161,21 @@ int wordnet_is_adjective(const char *lemma)
 
 	return synsets_of(lemma, ADJ, &sense, 1) > 0;
 }
+
+int wordnet_is_verb(const char *lemma)
+{
+	long sense;
+
+	return synsets_of(lemma, VERB, &sense, 1) > 0;
+}
 #else
 int wordnet_is_adjective(const char *lemma)
+{
+	(void)lemma;
+	return 0;
+}
+
+int wordnet_is_verb(const char *lemma)
 {
 	(void)lemma;
 	return 0;

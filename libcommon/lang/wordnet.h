@@ -38,5 +38,6 @@ double wordnet_fits(const struct wordnet_noun *word, const struct wordnet_noun *
 /* Whether some sense of a noun is what a sense of the other is a kind of. */
 int wordnet_is_above(const struct wordnet_noun *above, const struct wordnet_noun *word);
 
-/* Whether the lemma is an adjective that is known. */
+/* Whether the lemma is an adjective, or a verb, that is known. */
 int wordnet_is_adjective(const char *lemma);
+int wordnet_is_verb(const char *lemma);
