@@ -222,9 +222,9 @@ static double cell_side(const struct cloud *c, double low[3])
 	for (int k = 0; k < 3; k++) {
 		for (size_t i = 0; i < c->n; i++)
 			c->items[i] = (struct quantile_item){c->means[3 * i + (size_t)k], c->weight[i]};
-		const double from = quantile_weighted(c->items, c->n, 0.05),
-			     to = quantile_weighted(c->items, c->n, 0.95);
-		square += (to - from) * (to - from);
+		const double from = quantile_weighted(c->items, c->n, 0.25),
+			     to = quantile_weighted(c->items, c->n, 0.75);
+		square += 3.24 * (to - from) * (to - from);
 		low[k] = from;
 	}
 	return EXTENT_SPACING * sqrt(square / (double)c->n);
