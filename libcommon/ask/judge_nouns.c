@@ -129,6 +129,19 @@ static void judge_number(const struct meaning *m, int head, double *match)
 		}
 }
 
+/* "The screen with a film on it": where nothing is called so, what has it. match (O) in and out. */
+static void judge_part(struct meaning *m, int head, double *match)
+{
+	const size_t n = objects_of(m);
+	double *has = m->scratch + 8 * n;
+
+	if (largest(match, n) >= 0.5)
+		return;
+	vocabulary_has(m->vocabulary, m->sentence, head, PARSE_OTHER, has);
+	for (size_t o = 0; o < n; o++)
+		match[o] = fmax(match[o], PART_NOUN * has[o] * m->arrangement->objects[o].is_there);
+}
+
 void judge_noun(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
@@ -152,6 +165,8 @@ void judge_noun(struct meaning *m, int phrase)
 	for (size_t o = 0; o < n && m->naming != 1; o++) /* those that are not found yet are no anchors */
 		match[o] *= m->arrangement->objects[o].is_there;
 	const int is_any = is_vague(&p->words[head]) || (is_shape(p, f, head) && largest(match, n) < 0.5);
+	if (!phrase && !is_any && (f->attributes.n || f->clauses.n))
+		judge_part(m, head, match);
 	for (size_t o = 0; o < n && is_any; o++)
 		match[o] = fmax(match[o], VAGUE_LEAST);
 	if (phrase && is_denied_look(p, f, head)) {

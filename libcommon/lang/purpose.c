@@ -64,6 +64,13 @@ static int says_for(const struct parse *p)
 		if (parse_word_is(p, i, "for") && is_open(p, i + 1) &&
 			closed_class_of(p, i - 1) == CLOSED_GENERIC)
 			return 1;
+		if (i &&
+			parse_word_is(p, i,
+				"place|area|spot|space|surface|product|stuff|fluid|liquid|agent|equipment|gear|tool|"
+				"utensil|device|supplies|thing|item|gadget") &&
+			is_open(p, i - 1) &&
+			token_ends(p->words[i - 1].text, "ing", 2)) /* "a sleeping place" */
+			return 1;
 		if (parse_word_is(p, i, "used|use") && parse_word_is(p, i + 1, "to|for|it"))
 			return 1;
 		if (parse_word_is(p, i, "to|for|it") && is_open(p, i + 1) &&
