@@ -79,12 +79,13 @@ static double compare(
 		r->own[r->place[row->index[j]]] = row->share[j];
 	for (size_t i = 0; i < r->count; i++) {
 		const double own = (double)r->own[i], weight = (double)v->weight[r->who[i]],
-			     all = r->all[i] - vote * weight, in = fmax(r->in[i] - vote * own, 0);
+			     all = r->all[i] - vote * weight, in = r->in[i] - vote * own;
 		if (!(weight > 0) || all < known_share * vote * weight + known_least)
 			continue;
-		const double lifted = weight * fmin(in / (all + known_least) / level, 1);
-		both += fmin(own, lifted);
-		either += fmax(own, lifted);
+		const double share = in > 0 ? in / (all + known_least) / level : 0,
+			     lifted = weight * (share < 1 ? share : 1);
+		both += own < lifted ? own : lifted;
+		either += own < lifted ? lifted : own;
 	}
 	return either > 0 ? both / either : -1;
 }
@@ -122,32 +123,63 @@ static void revote(struct lift_objects *l, size_t object)
 	}
 }
 
+static void room_free(struct room *r)
+{
+	mem_free_all(r->who, r->place, r->in, r->all, r->own);
+}
+
+static int room_make(struct room *r, size_t gaussians, struct err *e)
+{
+	*r = (struct room){.who = mem_alloc(gaussians, sizeof *r->who, "shares", e),
+		.place = mem_alloc(gaussians, sizeof *r->place, "shares", e),
+		.in = mem_alloc(gaussians, sizeof *r->in, "shares", e),
+		.all = mem_alloc(gaussians, sizeof *r->all, "shares", e),
+		.own = mem_alloc(gaussians, sizeof *r->own, "shares", e)};
+	if (!r->who || !r->place || !r->in || !r->all || !r->own)
+		return -1;
+	for (size_t i = 0; i < gaussians; i++)
+		r->place[i] = -1;
+	return 0;
+}
+
+/* found (views): of how many masks of the object it is known how well they fit is returned. */
+static size_t compare_object(struct lift_objects *l, size_t object, struct room *r, double *found)
+{
+	for (int round = l->round; round < LIFT_ROUNDS; round++) {
+		compare_all(l, object, r, found);
+		revote(l, object);
+	}
+	return compare_all(l, object, r, found);
+}
+
 int lift_left_out(struct lift_objects *l, size_t named, double *agreement, size_t *masks, struct err *e)
 {
-	size_t most = 0, n = 0;
-	struct room r = {.who = mem_alloc(l->gaussians, sizeof *r.who, "shares", e),
-		.place = mem_alloc(l->gaussians, sizeof *r.place, "shares", e),
-		.in = mem_alloc(l->gaussians, sizeof *r.in, "shares", e),
-		.all = mem_alloc(l->gaussians, sizeof *r.all, "shares", e),
-		.own = mem_alloc(l->gaussians, sizeof *r.own, "shares", e)};
+	SCOPED double *found = mem_alloc(named, l->view_count * sizeof *found, "shares", e);
+	SCOPED size_t *counts = mem_zalloc(named, sizeof *counts, "shares", e);
+	size_t n = 0;
+	int failed = 0;
 
-	for (size_t v = 0; v < l->view_count; v++)
-		most += l->views[v].n;
-	SCOPED double *found = mem_alloc(most, sizeof *found, "shares", e);
-	const int bad = !r.who || !r.place || !r.in || !r.all || !r.own || !found;
-	for (size_t i = 0; i < l->gaussians && !bad; i++)
-		r.place[i] = -1;
-	for (size_t o = 0; o < named && !bad; o++) {
-		for (int round = l->round; round < LIFT_ROUNDS; round++) {
-			compare_all(l, o, &r, found + n);
-			revote(l, o);
+#pragma omp parallel reduction(| : failed)
+	{
+		SCOPED_BY(room_free) struct room r = {0};
+		struct err mine;
+		failed = !found || !counts || room_make(&r, l->gaussians, &mine);
+#pragma omp for schedule(dynamic)
+		for (size_t o = 0; o < named; o++)
+			if (!failed)
+				counts[o] = compare_object(l, o, &r, found + o * l->view_count);
+		if (failed && found && counts) {
+#pragma omp critical
+			*e = mine;
 		}
-		n += compare_all(l, o, &r, found + n);
+	}
+	for (size_t o = 0; o < named && !failed; o++) {
+		memmove(found + n, found + o * l->view_count, counts[o] * sizeof *found);
+		n += counts[o];
 	}
 	if (n)
 		qsort(found, n, sizeof *found, compare_double);
 	*masks = n;
 	*agreement = n >= LIFT_LEFT_OUT_MASKS ? quantile_sorted(found, n, 0.5) : NAN;
-	mem_free_all(r.who, r.place, r.in, r.all, r.own);
-	return bad ? -1 : 0;
+	return failed ? -1 : 0;
 }
