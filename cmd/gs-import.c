@@ -101,6 +101,10 @@ static void note_cameras(
 			"%s: the photographs of %zu of %zu views are turned against their cameras ('%s' is right after %d degrees clockwise): "
 			"turn their pixels as EXIF says ('mogrify -auto-orient'), or give those that the cameras are of",
 			files.images, r->turned, r->views, r->first, r->degrees);
+	if (r->misshapen && !r->turned)
+		cli_warn(cli,
+			"%s: the photographs of %zu of %zu views have another shape than their cameras ('%s' is %dx%d): give those that the cameras are of",
+			files.images, r->misshapen, r->views, r->odd, r->width, r->height);
 	if (!is_alike)
 		cli_warn(cli,
 			"%s: the scene does not look like its photographs (by %.2f in the middle of %zu views, at least %.2g is right): "

@@ -41,6 +41,9 @@ struct resemblance {
 	size_t turned;	   /* views whose photograph is alike only when it is turned */
 	const char *first; /* the first of them, of the scene's names, and its way, clockwise */
 	int degrees;
+	size_t misshapen; /* views whose photograph has another shape; of the first its name and size */
+	const char *odd;
+	int height, width;
 	size_t unread; /* views whose photograph cannot be read, and why the first cannot */
 	struct err why;
 };

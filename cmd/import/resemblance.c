@@ -84,6 +84,12 @@ static int compare_file(struct resemblance *r, const struct scene *s, const stru
 			r->why = why;
 		return 1;
 	}
+	if (!turns && !rle_has_shape(height, width, c->height, c->width) && !c->lens.model &&
+		!r->misshapen++) {
+		r->odd = c->name;
+		r->height = height;
+		r->width = width;
+	}
 	return compare(s, c, rgb, height, width, correlation, e);
 }
 

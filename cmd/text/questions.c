@@ -10,10 +10,12 @@
 
 static const char too_long[] = "is longer than 2000 bytes";
 
-/* Without the blanks at its ends: its new length. */
-static size_t trim(char *text, size_t n)
+/* In plain characters, without the blanks at its ends: its new length. */
+static size_t trim(char *text)
 {
+	utf8_plain(text);
 	const size_t blank = strspn(text, " \t\r\n");
+	size_t n = strlen(text);
 
 	while (n > blank && strchr(" \t\r\n", text[n - 1]))
 		n--;
@@ -76,7 +78,7 @@ int question_next(struct question *q, struct questions *from, struct err *e)
 		q->line = from->line;
 		q->text[n] = 0;
 		q->fault = is_long ? too_long : find_fault(q->text, n);
-		if (q->fault || trim(q->text, n))
+		if (q->fault || trim(q->text))
 			return 1;
 		if (byte == EOF)
 			return 0;
@@ -118,7 +120,7 @@ int question_take(struct question *q, const char *text)
 	if (q->fault)
 		return 0;
 	memcpy(q->text, text, n + 1);
-	if (trim(q->text, n))
+	if (trim(q->text))
 		return 1;
 	q->fault = "is empty";
 	return 0;

@@ -192,20 +192,54 @@ static void *read_pixels(struct png_job *job, const char *path, size_t bytes)
 	return NULL;
 }
 
+static unsigned brightest(const struct png_job *job, size_t pixel, int colours)
+{
+	unsigned most = 0;
+
+	for (int k = 0; k < colours; k++) {
+		const unsigned value = sample(job, pixel, k);
+		most = value > most ? value : most;
+	}
+	return most;
+}
+
+/* What a pixel of a mask is at least: 1; of a grey one that was a JPEG or scaled, which has greys near black
+ * and near white and few between, a half. */
+static unsigned least_bright(const struct png_job *job, int colours)
+{
+	size_t counts[4] = {0};
+	int is_grey = 1;
+
+	for (size_t i = 0, n = pixels_of(job); i < n; i++) {
+		const unsigned value = sample(job, i, 0) >> (job->depth - 8);
+		is_grey &= brightest(job, i, colours) == sample(job, i, colours / 2) &&
+			   sample(job, i, 0) == sample(job, i, colours - 1);
+		counts[value / 64] += value && value < 255;
+	}
+	return is_grey && counts[0] && counts[3] && counts[1] + counts[2] < counts[3]
+		       ? 128u << (job->depth - 8)
+		       : 1;
+}
+
 int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e)
 {
 	struct png_job job = {.e = e};
 	uint8_t *mask = read_pixels(&job, path, 1);
+	size_t marked = 0, cleared = 0;
 
 	if (mask) {
 		const int colours = job.channels - !(job.channels % 2);
 		const unsigned least = least_alpha(&job);
+		const unsigned bright = least_bright(&job, colours);
 		for (size_t i = 0, n = pixels_of(&job); i < n; i++) {
-			unsigned any = 0;
-			for (int k = 0; k < colours; k++)
-				any |= sample(&job, i, k);
-			mask[i] = any && !is_clear(&job, i, least);
+			const int clear = is_clear(&job, i, least);
+			cleared += (size_t)clear;
+			mask[i] = !clear && brightest(&job, i, colours) >= bright;
+			marked += mask[i];
 		}
+		/* black on nothing: alpha is the mask */
+		for (size_t i = 0, n = pixels_of(&job); i < n && cleared && !marked; i++)
+			mask[i] = !is_clear(&job, i, least);
 		*pixels = mask;
 		*height = job.height;
 		*width = job.width;

@@ -166,7 +166,7 @@ static int read_ref_lerf(
 
 	if (json_string(json_get(root, "info"), "name", 1, &image, r->where, e) < 0)
 		return -1;
-	SCOPED char *view = reading_view(image, e), *folder = file_dir(json, e),
+	SCOPED char *view = reading_view(r, image, e), *folder = file_dir(json, e),
 		    *masks = folder ? file_join(folder, "../gt_mask", "", e) : NULL;
 	int bad = !view || !masks;
 	cJSON_ArrayForEach(object, objects)

@@ -10,18 +10,29 @@
 #include <math.h>
 #include <stdio.h>
 
-/* The item of a list whose "id" is that number, or NULL. */
-static const cJSON *with_id(const cJSON *list, const cJSON *id)
+/* The item of a list whose "id" is that number; NULL with *e where none is, or two different ones. */
+static const cJSON *with_id(
+	const struct reading *r, const cJSON *list, const cJSON *object, const char *kind, struct err *e)
 {
-	const cJSON *item;
+	char key[32];
+	snprintf(key, sizeof key, "%s_id", kind);
+	const cJSON *item, *found = NULL, *id = json_get(object, key);
 
 	cJSON_ArrayForEach(item, list)
 	{
 		const cJSON *own = json_get(item, "id");
-		if (cJSON_IsNumber(own) && cJSON_IsNumber(id) && own->valuedouble == id->valuedouble)
-			return item;
+		if (!cJSON_IsNumber(own) || !cJSON_IsNumber(id) || own->valuedouble != id->valuedouble)
+			continue;
+		if (found && !cJSON_Compare(found, item, 1)) {
+			err_file(e, r->where, "two of the file's %s have its '%s', %g",
+				*kind == 'i' ? "images" : "categories", key, id->valuedouble);
+			return NULL;
+		}
+		found = found ? found : item;
 	}
-	return NULL;
+	if (!found)
+		err_file(e, r->where, "no %s has its '%s'", kind, key);
+	return found;
 }
 
 /* Run lengths say whose size they are of themselves. */
@@ -41,8 +52,52 @@ static int check_size(const struct reading *r, const cJSON *size, struct err *e)
 			: "");
 }
 
-static int draw_runs(struct reading *r, struct annotation *on, const cJSON *segmentation, struct err *e)
+/* How well the box of runs fits one of COCO's, [left, top, width, height], or one of two corners: the larger
+ * intersection over union. Runs go down columns of `side` pixels, or along rows. */
+static double fit_box(const struct rle *rle, int side, int is_along, const double want[4])
 {
+	double box[4] = {INFINITY, INFINITY, 0, 0}, best = 0; /* across the runs, along them */
+	size_t at = 0;
+
+	for (size_t i = 0; i < rle->n; at += rle->runs[i++]) {
+		if (i % 2 == 0 || !rle->runs[i])
+			continue;
+		const size_t n = (size_t)side, last = at + rle->runs[i] - 1;
+		const int is_whole = at / n < last / n;
+		box[0] = fmin(box[0], (double)(at / n));
+		box[1] = fmin(box[1], is_whole ? 0 : (double)(at % n));
+		box[2] = fmax(box[2], (double)(last / n + 1));
+		box[3] = fmax(box[3], is_whole ? side : (double)(last % n + 1));
+	}
+	for (int corners = 0; corners < 2; corners++) {
+		double both = 1, mine = 1, theirs = 1;
+		for (int k = 0; k < 2; k++) {
+			const double low = want[k], high = corners ? want[k + 2] : low + want[k + 2];
+			const double *own = box + (k ^ is_along);
+			both *= fmax(fmin(high, own[2]) - fmax(low, own[0]), 0);
+			mine *= own[2] - own[0];
+			theirs *= high - low;
+		}
+		best = fmax(best, both / fmax(mine + theirs - both, 1));
+	}
+	return best;
+}
+
+/* Programs write run lengths along rows, which COCO's do not go: the object's box tells. */
+static int check_way(const struct reading *r, const struct rle *rle, const cJSON *item, struct err *e)
+{
+	double box[4];
+
+	if (json_numbers(json_get(item, "bbox"), 4, box) || fit_box(rle, r->height, 0, box) > 0.5 ||
+		fit_box(rle, r->width, 1, box) < 0.8)
+		return 0;
+	return err_file(e, r->where,
+		"its run lengths go along rows, as its 'bbox' shows; COCO's go down columns: encode the transposed mask (in NumPy order='F')");
+}
+
+static int draw_runs(struct reading *r, struct annotation *on, const cJSON *item, struct err *e)
+{
+	const cJSON *segmentation = json_get(item, "segmentation");
 	const cJSON *counts = json_get(segmentation, "counts");
 	SCOPED_BY(rle_free) struct rle rle = {0};
 
@@ -50,7 +105,7 @@ static int draw_runs(struct reading *r, struct annotation *on, const cJSON *segm
 		return -1;
 	if (masks_take_counts(&rle, counts, r->height, r->width, r->where, e))
 		return -1;
-	return reading_unite(r, on, &rle, e);
+	return check_way(r, &rle, item, e) ? -1 : reading_unite(r, on, &rle, e);
 }
 
 /* Polygons, of which all are parts of the thing, or run lengths. */
@@ -71,7 +126,7 @@ static int read_segmentation(
 	if (!(on = reading_find(r, view, name, e)))
 		return -1;
 	if (counts)
-		return draw_runs(r, on, segmentation, e);
+		return draw_runs(r, on, item, e);
 	before = on->shapes;
 	cJSON_ArrayForEach(polygon, segmentation)
 	{
@@ -171,6 +226,8 @@ static int name_views(struct reading *r, const cJSON *images, struct coco *c, st
 			return -1;
 		for (char *p = c->files[c->n - 1]; *p; p++)
 			*p = *p == '\\' ? '/' : *p;
+		if (!*view_base(c->files[c->n - 1]))
+			return err_file(e, r->where, "key 'file_name' has no name: '%.200s'", file);
 	}
 	return -(check_twice(r, c, e) ||
 		 views_name((const char *const *)c->files, c->n, c->views, r->path, e));
@@ -180,14 +237,13 @@ static int read_annotation(
 	struct reading *r, const struct coco *c, const cJSON *root, const cJSON *item, struct err *e)
 {
 	const cJSON *images = json_get(root, "images"), *before;
-	const cJSON *image = with_id(images, json_get(item, "image_id"));
-	const cJSON *category = with_id(json_get(root, "categories"), json_get(item, "category_id"));
+	const cJSON *image = with_id(r, images, item, "image", e);
+	const cJSON *category = image ? with_id(r, json_get(root, "categories"), item, "category", e) : NULL;
 	const char *name;
 	size_t at = 0;
 
-	if (!image || !category)
-		return err_file(e, r->where, "no %s has its '%s'", image ? "category" : "image",
-			image ? "category_id" : "image_id");
+	if (!category)
+		return -1;
 	for (before = images->child; before != image; before = before->next)
 		at++;
 	return -(json_string(category, "name", 1, &name, r->where, e) < 0 ||

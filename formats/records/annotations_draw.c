@@ -16,7 +16,7 @@ enum { CIRCLE = 64 /* corners that stand for a circle */ };
 /* How far beside the picture a point may be that a person set at its edge: this share of its longer side. */
 static const double edge_share = 0.02;
 
-char *reading_view(const char *image, struct err *e)
+char *reading_view(const struct reading *r, const char *image, struct err *e)
 {
 	const char *base = strrchr(image, '\\');
 	SCOPED char *stem = mem_strdup(view_base(base ? base + 1 : image), e);
@@ -24,7 +24,9 @@ char *reading_view(const char *image, struct err *e)
 	if (!stem)
 		return NULL;
 	stem[view_stem(stem)] = 0;
-	return name_to_view(stem, e);
+	if (!*stem)
+		err_file(e, r->where, "its picture has no name: '%.200s'", image);
+	return *stem ? name_to_view(stem, e) : NULL;
 }
 
 /* Takes ".", and ".." with what is before it, out of a path. */
@@ -56,7 +58,7 @@ const char *reading_picture(struct reading *r, const char *json, const char *ima
 	for (char *p = path; p && *p; p++)
 		*p = *p == '\\' ? '/' : *p;
 	if (!a->view)
-		a->view = reading_view(image, e);
+		a->view = reading_view(r, image, e);
 	if (!a->picture && path && folder)
 		a->picture = file_join(strchr(path, ':') ? "." : folder, path, "", e);
 	if (a->picture)
@@ -85,10 +87,15 @@ int reading_size(struct reading *r, const cJSON *object, const char *height, con
 	return 0;
 }
 
-struct annotation *reading_find(struct reading *r, const char *view, const char *name, struct err *e)
+struct annotation *reading_find(struct reading *r, const char *view, const char *label, struct err *e)
 {
 	struct annotations *a = r->to;
 	char fault[NAME_FAULT];
+	SCOPED char *name = name_copy(label + strspn(label, " "), e);
+	if (!name)
+		return NULL;
+	for (char *end = name + strlen(name); end > name && end[-1] == ' '; end--)
+		end[-1] = 0;
 	const char *reason = name_fault(name, NAME_DATA, fault);
 
 	for (size_t i = 0; i < a->n && isnan(r->score); i++)

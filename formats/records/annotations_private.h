@@ -47,7 +47,7 @@ int reading_unite(struct reading *r, struct annotation *on, const struct rle *ma
 int reading_leave_out(struct reading *r, const char *kind, struct err *e);
 
 /* A picture's name as a view: without folders of either kind of slash, and without the ending. */
-char *reading_view(const char *image, struct err *e);
+char *reading_view(const struct reading *r, const char *image, struct err *e);
 
 /* Notes the one picture of a file, whose path is as seen from the folder of `json`: its view, which stays the
  * reading's; NULL with *e. */

@@ -6,6 +6,25 @@
 
 #include <math.h>
 
+enum { MEMBERS = 64 /* of an object whose keys are looked at; a table's are its reader's */ };
+
+const char *json_find_twice(const cJSON *value)
+{
+	const int is_small = cJSON_IsObject(value) && cJSON_GetArraySize(value) <= MEMBERS;
+	const cJSON *item, *before;
+	const char *found = NULL;
+
+	cJSON_ArrayForEach(item, value)
+	{
+		for (before = value->child; is_small && before != item; before = before->next)
+			if (!strcmp(before->string, item->string))
+				return item->string;
+		if (item->child && (found = json_find_twice(item)))
+			return found;
+	}
+	return NULL;
+}
+
 cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
 {
 	const char *stop = NULL;
@@ -15,12 +34,16 @@ cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
 		err_file(e, name, "not JSON: a NUL byte at offset %zu", strlen(text));
 	else if (!(value = cJSON_ParseWithOpts(text, &stop, 1)))
 		err_file(e, name, "not JSON at offset %td", stop ? stop - text : (ptrdiff_t)0);
-	if (value && json_has_nul(text)) {
-		cJSON_Delete(value);
-		value = NULL;
+	const char *twice = json_find_twice(value);
+	const int has_nul = value && json_has_nul(text);
+	if (twice && !has_nul)
+		err_file(e, name, "key '%.80s' is there twice in one object", twice);
+	if (has_nul)
 		err_file(e, name, "a NUL character (\\u0000) in a string");
-	}
-	return value;
+	if (!twice && !has_nul)
+		return value;
+	cJSON_Delete(value);
+	return NULL;
 }
 
 cJSON *json_read(const char *path, struct err *e)

@@ -20,6 +20,9 @@ static inline void json_release(cJSON **value)
 /* 1 where a string in JSON that was parsed has the escape \u0000, at which cJSON silently ends the string. */
 int json_has_nul(const char *json);
 
+/* A key that an object in a value has twice, of which programs take the first or the last; or NULL. */
+const char *json_find_twice(const cJSON *value);
+
 /* A member of an object, or NULL. */
 static inline cJSON *json_get(const cJSON *object, const char *key)
 {

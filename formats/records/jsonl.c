@@ -142,7 +142,10 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 	snprintf(j->where, sizeof j->where, "%s:%ld", j->path, j->line_number);
 	*object = cJSON_ParseWithOpts(j->line, &stop, 1);
 	const int is_cut = json_has_nul(j->line);
-	if (is_first && check_foreign(j, *object, e))
+	const char *twice = json_find_twice(*object);
+	if (twice)
+		len = jsonl_err(j, e, "key '%.80s' is there twice", twice);
+	else if (is_first && check_foreign(j, *object, e))
 		len = -1;
 	else if (!*object)
 		len = jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);

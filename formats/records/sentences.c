@@ -30,7 +30,10 @@ static char *copy_text(const struct jsonl *j, const char *value, struct err *e)
 		jsonl_err(j, e, "key 'text' is not UTF-8 at byte %zu", bad + 1);
 		return NULL;
 	}
-	return mem_strdup(value, e);
+	char *text = mem_strdup(value, e);
+	if (text)
+		utf8_plain(text);
+	return text;
 }
 
 static char *copy_item(
@@ -162,6 +165,7 @@ static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)
 		const size_t len = strlen(j->line), bad = utf8_check(j->line, len);
 		if (bad < len)
 			return jsonl_err(j, e, "not UTF-8 at byte %zu", bad + 1);
+		utf8_plain(j->line);
 		snprintf(ref, sizeof ref, "%ld", j->line_number);
 		if (!(one->ref = mem_strdup(ref, e)) || !(one->object = mem_strdup("?", e)) ||
 			!(one->text = mem_strdup(j->line, e)))

@@ -6,6 +6,7 @@
 #include "formats/splats/plyfile.h"
 #include "formats/splats/plypacked.h"
 
+#include <math.h>
 #include <stdio.h>
 
 /* A reader's slots: the properties every 3DGS file has, in this order, then f_rest_0 and on. */
@@ -23,6 +24,8 @@ struct source {
 	const struct plyfile_element *vertex;
 	struct layout layout;
 	int is_packed;
+	double low[2], high[2]; /* of opacities, and of all scales, as they are written */
+	size_t small;		/* scales below a half */
 	struct plypacked packed;
 	double *row; /* in the file's order; unused where packed */
 	/* Of a file that is like another one: NULL where none is. */
@@ -61,7 +64,11 @@ static int find_layout(
 static int open_source(struct source *in, struct plyfile *f, const struct plyfile_element *vertex,
 	size_t chunks, struct err *e)
 {
-	*in = (struct source){.file = f, .vertex = vertex, .is_packed = plypacked_is(f)};
+	*in = (struct source){.file = f,
+		.vertex = vertex,
+		.is_packed = plypacked_is(f),
+		.low = {INFINITY, INFINITY},
+		.high = {-INFINITY, -INFINITY}};
 	if (in->is_packed) {
 		if (plypacked_open(&in->packed, f, vertex, chunks, e))
 			return -1;
@@ -134,6 +141,33 @@ static void close_source(struct source *in)
 	mem_free_all(in->row, in->stays);
 }
 
+static void note_range(struct source *in, const double *values)
+{
+	for (int k = ROW_OPACITY; k < ROW_ROT; k++) {
+		const int is_scale = k != ROW_OPACITY;
+		in->low[is_scale] = fmin(in->low[is_scale], values[k]);
+		in->high[is_scale] = fmax(in->high[is_scale], values[k]);
+		in->small += is_scale && values[k] < 0.5;
+	}
+}
+
+/* Opacities and scales as they are, which no training gives in place of logits and logarithms: those have
+ * values below 0 or, where the unit is small, few below a half. */
+static int check_range(const struct source *in, struct err *e)
+{
+	const size_t n = in->vertex->rows;
+
+	if (n >= 4 && in->low[0] >= 0 && in->low[0] < in->high[0] &&
+		(in->high[0] <= 1 || (in->high[0] > 50 && in->high[0] <= 255)))
+		return err_file(e, in->file->path,
+			"all its opacities are from %g to %g: not logits, which 3DGS stores, log(o / (1 - o)) of o from 0 to 1",
+			in->low[0], in->high[0]);
+	if (n >= 4 && in->low[1] > 0 && in->low[1] < in->high[1] && 2 * in->small > 3 * n)
+		return err_file(e, in->file->path,
+			"all its scales are above 0, most below 0.5: not logarithms of sizes, which 3DGS stores");
+	return 0;
+}
+
 static int next_row(void *reader, size_t row, double *values, struct err *e)
 {
 	struct source *in = reader;
@@ -150,6 +184,7 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 		return -1;
 	for (int i = 0; i < ROW_REST + in->layout.rest; i++)
 		values[i] = in->row[in->layout.slot[i]];
+	note_range(in, values);
 	return 0;
 }
 
@@ -213,7 +248,7 @@ static int read_vertices(struct splats *s, double offset[3], struct rows_report 
 	if (!bad) {
 		const struct gaussian_rows rows = {
 			f->path, vertex->rows, in.layout.rest, next_row, &in, like ? like->splats : NULL};
-		bad = gaussian_rows_read(s, offset, report, &rows, e);
+		bad = gaussian_rows_read(s, offset, report, &rows, e) || check_range(&in, e);
 	}
 	close_source(&in);
 	return bad;

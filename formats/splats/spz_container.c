@@ -2,6 +2,7 @@
  * 4 on a plain header, extensions, a table, and a zstd stream for each array. formats/splats/spz.md. */
 #include "base/little.h"
 #include "base/mem.h"
+#include "base/path.h"
 #include "formats/splats/spz.h"
 
 #include <zlib.h>
@@ -74,7 +75,8 @@ static int read_header(struct spz *f, const unsigned char *h, struct err *e)
 	const uint64_t version = little_get(h + 4, 4);
 
 	if (little_get(h, 4) != SPZ_MAGIC)
-		return err_file(e, f->name, "not an .spz file: it does not begin with 'NGSP'");
+		return err_file(e, f->name, "not an .spz file: it does not begin with 'NGSP'%s",
+			path_ends(f->name, ".spz") ? "" : "; gunzip unpacks what else it may be");
 	if (version < SPZ_OLDEST || version > SPZ_LATEST)
 		return err_file(
 			e, f->name, "version %llu of .spz, expected 2 to 4", (unsigned long long)version);

@@ -7,6 +7,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <stdint.h>
+#include <strings.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -19,6 +20,23 @@ static int is_standard(const char *path)
 const char *file_name(const char *path)
 {
 	return is_standard(path) ? "stdin" : path;
+}
+
+/* What is on disk where a file was not fetched: Git's pointer to it, or the page of a server. */
+static int refuse_stand_in(const char *path, const void *data, size_t len, struct err *e)
+{
+	static const struct {
+		const char *begin, *what;
+	} kinds[] = {{"version https://git-lfs.github.com/spec/",
+			     "a pointer of Git LFS, not the file: 'git lfs pull' fetches it"},
+		{"<!doctype html", "a web page, not the file: download it again"},
+		{"<html", "a web page, not the file: download it again"}};
+
+	for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
+		if (len > strlen(kinds[i].begin) && !path_ends(path, ".html") &&
+			!strncasecmp(data, kinds[i].begin, strlen(kinds[i].begin)))
+			return err_file(e, path, "%s", kinds[i].what);
+	return 0;
 }
 
 FILE *file_open(const char *path, struct err *e)
@@ -35,6 +53,16 @@ FILE *file_open(const char *path, struct err *e)
 		errno = EISDIR;
 		err_errno(e, "%s", path);
 		return NULL;
+	}
+	char begin[64];
+	struct stat st;
+	if (!fstat(fileno(in), &st) && S_ISREG(st.st_mode)) {
+		const size_t got = fread(begin, 1, sizeof begin, in);
+		rewind(in);
+		if (refuse_stand_in(path, begin, got, e)) {
+			fclose(in);
+			return NULL;
+		}
 	}
 	return in;
 }
@@ -157,8 +185,12 @@ int file_map(const char *path, struct file_map *map, struct err *e)
 		close(fd);
 		return -1;
 	}
-	const int bad = file_map_part(fd, path, 0, (size_t)st.st_size, map, e);
+	int bad = file_map_part(fd, path, 0, (size_t)st.st_size, map, e);
 	close(fd);
+	if (!bad && refuse_stand_in(path, map->data, map->len, e)) {
+		file_unmap(map);
+		bad = -1;
+	}
 	return bad;
 }
 

@@ -188,6 +188,19 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 	says 4 "gs-import: s.ply: Not a directory" "$BIN/gs-import" --cameras c.json --images s.ply -o scene s.ply
 }
 
+@test "photographs whose names are in other letters, and of another shape" {
+	load pictures
+	mkdir photos
+	kind=0800 picture photos/B.Png '00 11 22 33'
+	printf '[%s]' "$(camera3dgs | sed 's/"b"/"b.PNG"/')" >c.json
+	"$BIN/gs-import" --cameras c.json --images photos -o scene s.ply 2>err
+	[ "$(imported image)" = '["../photos/B.Png"]' ]
+	grep -q "the photographs of 1 of 1 views have another shape than their cameras ('b' is 4x1): give those that the cameras are of" err
+	: >photos/b.png
+	"$BIN/gs-import" -q --cameras c.json --images photos -o scene s.ply
+	[ "$(imported image)" = '[null]' ]
+}
+
 @test "a photograph's path does not lead out of --images" {
 	mkdir photos
 	: >away.png

@@ -187,6 +187,34 @@ made() {
 	[ "$(jq -s length both)" = 4 ]
 }
 
+@test "COCO: run lengths along rows, numbers that two have, labels with blanks, pictures without a name" {
+	jq -n '{images: [{id: 5, file_name: "view_1.png", height: 6, width: 8}], categories: [{id: 1, name: " cup "}],
+		annotations: [{image_id: 5, category_id: 1, bbox: [1, 2, 3, 3], segmentation: {size: [6, 8], counts: [17, 3, 5, 3, 5, 3, 12]}}]}' >rows.json
+	says 3 "mask-import: rows.json: annotation 0: its run lengths go along rows, as its 'bbox' shows; COCO's go down columns: encode the transposed mask (in NumPy order='F')" "$BIN/mask-import" -o none rows.json
+	for box in '[1, 2, 3, 3]' '[1, 2, 4, 5]'; do
+		jq ".annotations[0] |= (.bbox = $box | .segmentation.counts = [8, 3, 3, 3, 3, 3, 25])" rows.json >columns.json
+		"$BIN/mask-import" -o made.jsonl columns.json
+		[ "$(jq -r .object made.jsonl)" = cup ]
+	done
+	jq '.images += [{id: 5, file_name: "view_2.png", height: 6, width: 8}]' columns.json >twice.json
+	says 3 "mask-import: twice.json: annotation 0: two of the file's images have its 'image_id', 5" "$BIN/mask-import" -o none twice.json
+	jq '.categories += [{id: 1, name: "pot"}]' columns.json >twice.json
+	says 3 "mask-import: twice.json: annotation 0: two of the file's categories have its 'category_id', 1" "$BIN/mask-import" -o none twice.json
+	jq '.images[0].file_name = "a/"' columns.json >none.json
+	says 3 "mask-import: none.json: image 0: key 'file_name' has no name: 'a/'" "$BIN/mask-import" -o none none.json
+	[ ! -e none ]
+}
+
+@test "masks that were JPEGs, and black ones on nothing" {
+	kind=0800 picture grey.png '00 03 05 fb' '02 00 fe ff'
+	kind=0806 picture black.png '00000000 00000000 00000000 000000ff' '00000000 00000000 000000ff 000000ff'
+	for file in grey black; do
+		echo "{\"view\":\"v\",\"object\":\"cup\",\"path\":\"$file.png\"}" >$file.jsonl
+		"$BIN/mask-import" -o made.jsonl $file.jsonl
+		[ "$(jq -c .segmentation made.jsonl)" = '{"size":[2,4],"counts":"53"}' ]
+	done
+}
+
 # coco SEGMENTATION: a COCO file of one label in a picture of 20 by 12 pixels, on stdout.
 coco() {
 	jq -n --argjson s "$1" '{images: [{id: 1, file_name: "a.png", height: 12, width: 20}], categories: [{id: 1, name: "cup"}],

@@ -190,6 +190,7 @@ Try 'text-encode --help'." env -u XDG_CACHE_HOME -u HOME "$BIN/text-encode" -o t
 	printf '{"ref":"%s","object":"?","text":"%s","split":"test"}\n' 1 "the red cup" 4 "the big mug" 5 "tasse à café" |
 		iconv -f UTF-8 -t UTF-16 | encode - | cmp - text
 	"$BIN/gs-check" text
+	printf '\xef\xbd\x94he\xe2\x80\x89red\xe3\x80\x80cup\n\n\nthe\xc2\xa0b\xc2\xadig \xe2\x80\x8bmug\ntasse à cafe\xcc\x81' | encode - | cmp - text
 	printf 'cup\ncaf\xe9\n' >latin
 	says 3 'text-encode: latin:2: not UTF-8 at byte 4' "$BIN/text-encode" --model model -o none latin
 	printf 'cup\nc\0p\n' >nul

@@ -36,6 +36,27 @@ refused() {
 	json '{"info":{"name":"a.jpg"},"object":[{"category":"cup"}]}' "labels of Ref-LERF: 'mask-import -o masks.jsonl f.json' makes mask records of their pictures in gt_mask"
 }
 
+@test "what stands in for a file that was not fetched" {
+	while IFS='|' read -r text reason; do
+		printf '%s\n' "$text" 'oid sha256:0' >x.ply
+		no_splats x.ply "$reason"
+		for tool in text-encode text-parse pseudomask-select; do
+			says 3 "$tool: x.ply: $reason" "$BIN/$tool" -o out x.ply
+		done
+		says 1 "x.ply: $reason" "$BIN/gs-check" x.ply
+	done <<-'END'
+		version https://git-lfs.github.com/spec/v1|a pointer of Git LFS, not the file: 'git lfs pull' fetches it
+		<!DOCTYPE html><html lang="en">|a web page, not the file: download it again
+	END
+	splats_ply s.ply
+	gzip -c s.ply >s.gz
+	no_splats s.gz "not an .spz file: it does not begin with 'NGSP'; gunzip unpacks what else it may be"
+	head -c 64 /dev/zero | tr '\0' '\377' >s.splat
+	no_splats s.splat "none of its 2 Gaussians can be used: 2 have a value that is not finite, 0 a zero quaternion"
+	{ cat s.splat; printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\077\0\0\200\077\0\0\200\077\0\0\0\377\377\0\0\0'; } >t.splat
+	no_splats t.splat "not a .splat: 2 of its 3 Gaussians have impossible numbers"
+}
+
 @test "splats in other containers: the command that converts them" {
 	for kind in ksplat lcc lcc2; do
 		printf 'xxxxxxxxxxxxxxxx' >"a.b.$kind"

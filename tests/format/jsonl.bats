@@ -44,6 +44,14 @@ not() { ! "$@"; }
 	says 1 "t.json: no views: a COLMAP model has them in images.bin or images.txt, a transforms.json in its frames (read as UTF-16)" "$BIN/gs-check" t.json
 }
 
+@test "a key twice in an object" {
+	printf '%s\n' "${one/\"text\"/\"ref\":\"r3\",\"text\"}" >x
+	says 1 "x:1: key 'ref' is there twice" "$BIN/gs-check" x
+	echo '{"w":40,"h":30,"fl_x":50,"frames":[{"a":1,"a":2}]}' >t.json
+	says 1 "t.json:1: key 'a' is there twice" "$BIN/gs-check" t.json
+	says 3 "gs-import: t.json: key 'a' is there twice in one object" "$BIN/gs-import" --cameras t.json -o none /dev/null
+}
+
 @test "lines are counted with the blank ones" {
 	printf '\n%s\n\n\n{}\n' "$one" >x
 	says 1 "x:5: key 'ref' is missing" "$BIN/gs-check" x

@@ -117,6 +117,15 @@ header() {
 	refused "element 'vertex', row 0: no number at offset $(($(ply_header 1 | wc -c) + 31))"
 }
 
+@test "opacities that are no logits, and scales that are no logarithms" {
+	splats_ply s.ply '0 0 2 1 0.5 0 0 -3 -3 -3 1 0 0 0' '0 0 2 1 0.5 0 0.25 -3 -3 -3 1 0 0 0' '0 0 2 1 0.5 0 0.5 -3 -3 -3 1 0 0 0' '0 0 2 1 0.5 0 1 -3 -3 -3 1 0 0 0'
+	refused "all its opacities are from 0 to 1: not logits, which 3DGS stores, log(o / (1 - o)) of o from 0 to 1"
+	sed 's/0.5 0 1 -3/0.5 0 255 -3/' s.ply >t && mv t s.ply
+	refused "all its opacities are from 0 to 255: not logits, which 3DGS stores, log(o / (1 - o)) of o from 0 to 1"
+	sed 's/0 255 -3 -3 -3/0 -2 0.2 0.1 0.1/; s/-3 -3 -3/0.1 0.01 0.2/' s.ply >t && mv t s.ply
+	refused "all its scales are above 0, most below 0.5: not logarithms of sizes, which 3DGS stores"
+}
+
 @test "lists of impossible lengths" {
 	printf 'ply\nformat ascii 1.0\nelement face 1\nproperty list int int i\nelement vertex 0\n%s\nend_header\n%s\n' \
 		"$(printf 'property float %s\n' $ply_names)" -1 >s.ply

@@ -33,6 +33,22 @@ static void utf8_known_cases(void)
 		"a cut character is U+FFFD, one byte, at %zu", at);
 }
 
+static void utf8_plain_forms(void)
+{
+	/* a blank that does not break, a thin one, an ideographic one; none, a soft hyphen; wide letters; e,
+	 * acute */
+	char text[] = "a\xc2\xa0"
+		      "b\xe2\x80\x89"
+		      "c\xe3\x80\x80"
+		      "d\xe2\x80\x8b"
+		      "e\xc2\xad"
+		      "f\xef\xbd\x87"
+		      "e\xcc\x81";
+
+	utf8_plain(text);
+	CHECK(!strcmp(text, "a b c defg\xc3\xa9"), "plain text is '%s'", text);
+}
+
 static void utf8_round_trip(void)
 {
 	size_t wrong = 0;
@@ -191,6 +207,7 @@ int main(void)
 		return 1;
 	close(fd);
 	utf8_known_cases();
+	utf8_plain_forms();
 	utf8_round_trip();
 	text_round_trip();
 	text_broken_rules();
