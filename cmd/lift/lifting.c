@@ -275,6 +275,10 @@ int lifting_read(struct lifting *l, const struct lifting_files *files, const str
 		(l->files->weights && find_views(l, to, e)) || find_sentences(l, e))
 		return -1;
 	find_objects(l, to);
+	if (l->own && !l->objects)
+		return err_set(e, ERR_FORMAT,
+			"%s: no mask of a training view is of a training sentence's object of %s: names are compared letter by letter",
+			file_name(files->masks), file_name(files->text));
 	return find_spare(l, e);
 }
 

@@ -201,6 +201,12 @@ refer-lift: warning: by-test: $count masks are of no training sentence's object"
 refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training sentence's object" lift --masks unknown -o model
 }
 
+@test "masks, but none of a sentence's object" {
+	jq -c '.object |= ascii_upcase | del(.ref)' masks.jsonl >upper
+	says 3 "refer-lift: upper: no mask of a training view is of a training sentence's object of text.safetensors: names are compared letter by letter" lift -q --masks upper -o none
+	[ ! -e none ]
+}
+
 @test "no masks: an empty model, and a warning for each object" {
 	[ "$(lift --masks /dev/null -o model 2>&1 | grep -c "has no mask in a training view")" = 3 ]
 	says 0 "model: ok: refer.lifted, 0 objects, 0 shares, 0 sentences, 0 words, 24 columns, 2000 gaussians of the scene, scene $(
