@@ -7,9 +7,6 @@
 #include "base/utf8.h"
 #include "geom/views.h"
 
-#include <dirent.h>
-#include <strings.h>
-
 /* The path of a file that exists, or NULL. *e is set only when memory is out. */
 static char *try_file(const char *dir, const char *name, const char *suffix, struct err *e)
 {
@@ -18,24 +15,6 @@ static char *try_file(const char *dir, const char *name, const char *suffix, str
 	if (path && file_exists(path) && !file_is_dir(path))
 		return path;
 	free(path);
-	return NULL;
-}
-
-/* The only file of a folder that has this name but for the case of its letters, or NULL. */
-static char *find_caseless(const char *folder, const char *name, struct err *e)
-{
-	DIR *dir = opendir(folder);
-	char *found = NULL;
-	int count = 0;
-
-	for (struct dirent *d = dir ? readdir(dir) : NULL; d && count < 2; d = readdir(dir))
-		if (!strcasecmp(d->d_name, name) && !count++)
-			found = try_file(folder, d->d_name, "", e);
-	if (dir)
-		closedir(dir);
-	if (count < 2)
-		return found;
-	free(found);
 	return NULL;
 }
 
@@ -54,7 +33,7 @@ static char *find_image(const char *dir, const char *image, struct err *e)
 		if (!path)
 			path = try_file(dir, view_base(name), suffix, e);
 	}
-	return path ? path : find_caseless(dir, view_base(image), e);
+	return path;
 }
 
 /* The photograph's path as the scene has it, or NULL: JSON cannot have a path that is not UTF-8. */

@@ -188,37 +188,21 @@ static void *read_pixels(struct png_job *job, const char *path, size_t bytes)
 		err_file(job->e, job->path,
 			"a JPEG, whose colours are not quite those that were painted: save it as PNG");
 	else if (!read_raw(job, in))
-		return mem_alloc(pixels_of(job), bytes, job->path, job->e);
+		return mem_zalloc(pixels_of(job), bytes, job->path, job->e);
 	return NULL;
 }
 
-static unsigned brightest(const struct png_job *job, size_t pixel, int colours)
-{
-	unsigned most = 0;
-
-	for (int k = 0; k < colours; k++) {
-		const unsigned value = sample(job, pixel, k);
-		most = value > most ? value : most;
-	}
-	return most;
-}
-
-/* What a pixel of a mask is at least: 1; of a grey one that was a JPEG or scaled, which has greys near black
- * and near white and few between, a half. */
-static unsigned least_bright(const struct png_job *job, int colours)
+/* What is of a mask is at least so bright: 1, or half where greys, near black and near white and few between,
+ * show that it was a JPEG or scaled. */
+static unsigned least_bright(const struct png_job *job)
 {
 	size_t counts[4] = {0};
-	int is_grey = 1;
 
-	for (size_t i = 0, n = pixels_of(job); i < n; i++) {
+	for (size_t i = 0, n = job->channels < 3 ? pixels_of(job) : 0; i < n; i++) {
 		const unsigned value = sample(job, i, 0) >> (job->depth - 8);
-		is_grey &= brightest(job, i, colours) == sample(job, i, colours / 2) &&
-			   sample(job, i, 0) == sample(job, i, colours - 1);
 		counts[value / 64] += value && value < 255;
 	}
-	return is_grey && counts[0] && counts[3] && counts[1] + counts[2] < counts[3]
-		       ? 128u << (job->depth - 8)
-		       : 1;
+	return counts[0] && counts[3] && counts[1] + counts[2] < counts[3] ? 128u << (job->depth - 8) : 1;
 }
 
 int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e)
@@ -230,11 +214,12 @@ int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, s
 	if (mask) {
 		const int colours = job.channels - !(job.channels % 2);
 		const unsigned least = least_alpha(&job);
-		const unsigned bright = least_bright(&job, colours);
+		const unsigned bright = least_bright(&job);
 		for (size_t i = 0, n = pixels_of(&job); i < n; i++) {
 			const int clear = is_clear(&job, i, least);
+			for (int k = 0; k < colours && !clear; k++)
+				mask[i] |= sample(&job, i, k) >= bright;
 			cleared += (size_t)clear;
-			mask[i] = !clear && brightest(&job, i, colours) >= bright;
 			marked += mask[i];
 		}
 		/* black on nothing: alpha is the mask */

@@ -52,44 +52,22 @@ static int check_size(const struct reading *r, const cJSON *size, struct err *e)
 			: "");
 }
 
-/* How well the box of runs fits one of COCO's, [left, top, width, height], or one of two corners: the larger
- * intersection over union. Runs go down columns of `side` pixels, or along rows. */
-static double fit_box(const struct rle *rle, int side, int is_along, const double want[4])
-{
-	double box[4] = {INFINITY, INFINITY, 0, 0}, best = 0; /* across the runs, along them */
-	size_t at = 0;
-
-	for (size_t i = 0; i < rle->n; at += rle->runs[i++]) {
-		if (i % 2 == 0 || !rle->runs[i])
-			continue;
-		const size_t n = (size_t)side, last = at + rle->runs[i] - 1;
-		const int is_whole = at / n < last / n;
-		box[0] = fmin(box[0], (double)(at / n));
-		box[1] = fmin(box[1], is_whole ? 0 : (double)(at % n));
-		box[2] = fmax(box[2], (double)(last / n + 1));
-		box[3] = fmax(box[3], is_whole ? side : (double)(last % n + 1));
-	}
-	for (int corners = 0; corners < 2; corners++) {
-		double both = 1, mine = 1, theirs = 1;
-		for (int k = 0; k < 2; k++) {
-			const double low = want[k], high = corners ? want[k + 2] : low + want[k + 2];
-			const double *own = box + (k ^ is_along);
-			both *= fmax(fmin(high, own[2]) - fmax(low, own[0]), 0);
-			mine *= own[2] - own[0];
-			theirs *= high - low;
-		}
-		best = fmax(best, both / fmax(mine + theirs - both, 1));
-	}
-	return best;
-}
-
-/* Programs write run lengths along rows, which COCO's do not go: the object's box tells. */
+/* Programs write run lengths along rows, which COCO's do not go: the object's box, [left, top, width, height]
+ * or two corners, has then what the runs mark along rows, and not what they mark down columns. */
 static int check_way(const struct reading *r, const struct rle *rle, const cJSON *item, struct err *e)
 {
-	double box[4];
+	const uint32_t h = (uint32_t)r->height, w = (uint32_t)r->width;
+	size_t along = 0, down = 0;
+	double b[4];
 
-	if (json_numbers(json_get(item, "bbox"), 4, box) || fit_box(rle, r->height, 0, box) > 0.5 ||
-		fit_box(rle, r->width, 1, box) < 0.8)
+	if (json_numbers(json_get(item, "bbox"), 4, b))
+		return 0;
+	for (uint32_t i = 0, k = 0; k < rle->n; i += rle->runs[k++])
+		for (uint32_t p = i; k % 2 && p < i + rle->runs[k]; p++) {
+			along += p % w >= b[0] && p / w >= b[1] && p % w < b[0] + b[2] && p / w < b[1] + b[3];
+			down += p / h >= b[0] && p % h >= b[1] && p / h < b[0] + b[2] && p % h < b[1] + b[3];
+		}
+	if (along <= 0.9 * (double)rle_area(rle) || down >= 0.6 * (double)rle_area(rle))
 		return 0;
 	return err_file(e, r->where,
 		"its run lengths go along rows, as its 'bbox' shows; COCO's go down columns: encode the transposed mask (in NumPy order='F')");

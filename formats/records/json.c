@@ -36,12 +36,12 @@ cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
 		err_file(e, name, "not JSON at offset %td", stop ? stop - text : (ptrdiff_t)0);
 	const char *twice = json_find_twice(value);
 	const int has_nul = value && json_has_nul(text);
-	if (twice && !has_nul)
-		err_file(e, name, "key '%.80s' is there twice in one object", twice);
-	if (has_nul)
-		err_file(e, name, "a NUL character (\\u0000) in a string");
 	if (!twice && !has_nul)
 		return value;
+	if (has_nul)
+		err_file(e, name, "a NUL character (\\u0000) in a string");
+	else
+		err_file(e, name, "key '%.80s' is there twice in one object", twice);
 	cJSON_Delete(value);
 	return NULL;
 }

@@ -24,8 +24,8 @@ struct source {
 	const struct plyfile_element *vertex;
 	struct layout layout;
 	int is_packed;
-	double low[2], high[2]; /* of opacities, and of all scales, as they are written */
-	size_t small;		/* scales below a half */
+	double range[2][2]; /* of opacities, and of all scales, as they are written */
+	size_t small;	    /* scales below a half */
 	struct plypacked packed;
 	double *row; /* in the file's order; unused where packed */
 	/* Of a file that is like another one: NULL where none is. */
@@ -67,8 +67,7 @@ static int open_source(struct source *in, struct plyfile *f, const struct plyfil
 	*in = (struct source){.file = f,
 		.vertex = vertex,
 		.is_packed = plypacked_is(f),
-		.low = {INFINITY, INFINITY},
-		.high = {-INFINITY, -INFINITY}};
+		.range = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
 	if (in->is_packed) {
 		if (plypacked_open(&in->packed, f, vertex, chunks, e))
 			return -1;
@@ -144,10 +143,10 @@ static void close_source(struct source *in)
 static void note_range(struct source *in, const double *values)
 {
 	for (int k = ROW_OPACITY; k < ROW_ROT; k++) {
-		const int is_scale = k != ROW_OPACITY;
-		in->low[is_scale] = fmin(in->low[is_scale], values[k]);
-		in->high[is_scale] = fmax(in->high[is_scale], values[k]);
-		in->small += is_scale && values[k] < 0.5;
+		double *range = in->range[k != ROW_OPACITY];
+		range[0] = fmin(range[0], values[k]);
+		range[1] = fmax(range[1], values[k]);
+		in->small += k != ROW_OPACITY && values[k] < 0.5;
 	}
 }
 
@@ -155,14 +154,14 @@ static void note_range(struct source *in, const double *values)
  * values below 0 or, where the unit is small, few below a half. */
 static int check_range(const struct source *in, struct err *e)
 {
-	const size_t n = in->vertex->rows;
+	const size_t n = in->vertex->rows < 4 ? 0 : in->vertex->rows; /* fewer may have any values */
+	const double low = in->range[0][0], high = in->range[0][1];
 
-	if (n >= 4 && in->low[0] >= 0 && in->low[0] < in->high[0] &&
-		(in->high[0] <= 1 || (in->high[0] > 50 && in->high[0] <= 255)))
+	if (n && low >= 0 && low < high && (high <= 1 || (high > 50 && high <= 255)))
 		return err_file(e, in->file->path,
 			"all its opacities are from %g to %g: not logits, which 3DGS stores, log(o / (1 - o)) of o from 0 to 1",
-			in->low[0], in->high[0]);
-	if (n >= 4 && in->low[1] > 0 && in->low[1] < in->high[1] && 2 * in->small > 3 * n)
+			low, high);
+	if (n && in->range[1][0] > 0 && in->range[1][0] < in->range[1][1] && 2 * in->small > 3 * n)
 		return err_file(e, in->file->path,
 			"all its scales are above 0, most below 0.5: not logarithms of sizes, which 3DGS stores");
 	return 0;

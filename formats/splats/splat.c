@@ -53,13 +53,6 @@ int splat_read_map(struct splats *s, double offset[3], struct rows_report *repor
 			SPLAT_BYTES);
 	else
 		bad = gaussian_rows_read(s, offset, report, &rows, e);
-	if (!bad && 2 * s->n < rows.n) {
-		bad = err_file(e, name, "not a .splat: %zu of its %zu Gaussians have impossible numbers",
-			rows.n - s->n, rows.n);
-		splats_free(s);
-		free(report ? report->dropped : NULL);
-		gaussian_rows_none(s, report);
-	}
 	file_unmap(map);
 	return bad ? -1 : 0;
 }

@@ -35,15 +35,14 @@ static void utf8_known_cases(void)
 
 static void utf8_plain_forms(void)
 {
-	/* a blank that does not break, a thin one, an ideographic one; none, a soft hyphen; wide letters; e,
-	 * acute */
-	char text[] = "a\xc2\xa0"
-		      "b\xe2\x80\x89"
-		      "c\xe3\x80\x80"
-		      "d\xe2\x80\x8b"
-		      "e\xc2\xad"
-		      "f\xef\xbd\x87"
-		      "e\xcc\x81";
+	/* blanks: unbroken, thin, wide; nothing: of no width, a soft hyphen; a wide letter; e and an acute */
+	char text[] = {"a\xc2\xa0"
+		       "b\xe2\x80\x89"
+		       "c\xe3\x80\x80"
+		       "d\xe2\x80\x8b"
+		       "e\xc2\xad"
+		       "f\xef\xbd\x87"
+		       "e\xcc\x81"};
 
 	utf8_plain(text);
 	CHECK(!strcmp(text, "a b c defg\xc3\xa9"), "plain text is '%s'", text);
