@@ -25,6 +25,9 @@ const char *view_fault(const struct camera *c)
 		return "its focal length is not positive";
 	if (!isfinite(c->cx) || !isfinite(c->cy))
 		return "its principal point is not finite";
+	/* pictures of more than an icon's size, on which less than a pixel is no lens's */
+	if (c->width >= 64 && (c->fx < 0.02 * c->width || (fabs(c->cx) <= 1 && fabs(c->cy) <= 1)))
+		return "its focal length or principal point is that of a picture of size 1, or none: both are in pixels";
 	if (!camera_is_rigid(c))
 		return "its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?";
 	return NULL;

@@ -118,6 +118,13 @@ lens() {
 	says 3 "gs-import: transforms.json: view 'images/b.png': its focal length is not positive" import
 }
 
+@test "focal lengths and principal points as shares of the picture" {
+	for lens in '"fl_x":0.9,"cx":320,"cy":240' '"fl_x":600,"cx":0.5,"cy":0.5' '"fl_x":600,"cx":0,"cy":0'; do
+		printf '{"w":640,"h":480,%s,"frames":[%s]}' "$lens" "$(frame)" >t.json
+		says 1 "t.json: view 'images/b.png': its focal length or principal point is that of a picture of size 1, or none: both are in pixels" "$BIN/gs-check" t.json
+	done
+}
+
 @test "lenses that are not pinholes: refused, or their pinhole with --undistort" {
 	for key in k1 k2 k3 p1 p2; do
 		transforms $key=-0.05 >transforms.json
