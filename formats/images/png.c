@@ -105,7 +105,7 @@ static int decode(struct png_job *job, FILE *in)
 	else
 		png_set_expand(job->png);
 	if (job->is_rgb) {
-		png_set_strip_alpha(job->png);
+		png_set_background(job->png, &(png_color_16){0}, PNG_BACKGROUND_GAMMA_SCREEN, 0, 1);
 		png_set_strip_16(job->png);
 	}
 	png_set_interlace_handling(job->png);
