@@ -1,6 +1,6 @@
 # The workflows on a folder in the layout of the desk scene: point_cloud.ply, sparse/0, images, sentences.jsonl,
 # candidates.jsonl, truth.jsonl. Targets: desk (two-stage.mk), lift (lift.mk) and
-# field (trained fields that learn what lift made, with desk-field.sh).
+# field (trained fields, that learn what lift made and in the paper's way, with desk-field.sh).
 #
 # DATA        the folder (required)
 # OUT         folder for everything that is made; default build/desk, and build/desk-lift for lift and field
@@ -46,5 +46,5 @@ lift:
 	$(call flow,lift.mk) ASK=$(ASK)
 
 field: lift
-	@TOOLS=$(tool) OUT=$(OUT) SENTENCES=$(DATA)/sentences.jsonl TRUTH=$(DATA)/truth.jsonl SEEDS=$(call quoted,SEEDS) \
+	@TOOLS=$(tool) OUT=$(OUT) SENTENCES=$(DATA)/sentences.jsonl CANDIDATES=$(DATA)/candidates.jsonl TRUTH=$(DATA)/truth.jsonl SEEDS=$(call quoted,SEEDS) \
 		TAUGHT=$(call quoted,TAUGHT) BERT=$(call quoted,BERT) $(here)desk-field.sh

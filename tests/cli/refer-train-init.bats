@@ -45,6 +45,7 @@ lifted() {
 	lifted l
 	for warm in 80 30; do
 		options=(--interaction none --init l --init-iterations $warm)
+		[ $warm = 80 ] || options+=(--query parses)
 		train "${options[@]}" --iterations 120 -o whole
 		rm -f m m.checkpoint
 		says 4 "refer-train: /dev/full: No space left on device" train "${options[@]}" --iterations 150 --checkpoint 50 -o m --log /dev/full
