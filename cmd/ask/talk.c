@@ -156,8 +156,15 @@ static int add_those(const struct talk *talk, int is_part, const char *question,
 static const struct meaning_set *understand_part(const struct talk *talk, const struct question_asked *last,
 	struct referents *r, const char *part, char understood[QUESTION_TEXT])
 {
-	char of_those[QUESTION_TEXT], thing[QUESTION_TEXT];
+	char of_those[QUESTION_TEXT], thing[QUESTION_TEXT], noun[TOKEN_LENGTH];
 	const int is = add_those(talk, 1, part, of_those);
+	struct tokens t;
+
+	/* "which mug is the largest? and the smallest?" */
+	tokens_take(&t, part, NULL, NULL, 0);
+	question_noun(part, noun);
+	if (!is && t.n > 1 && !*noun && tokens_class(&t, t.n - 1) == CLOSED_SIZE)
+		snprintf(of_those, sizeof of_those, "%.400s %s", part, r->kind);
 	const struct meaning_set *set = put_set(talk, is ? &talk->of : &talk->set, r, of_those, thing);
 
 	/* "what is on the tray? and the thing behind it?" is not what is on that */

@@ -213,6 +213,15 @@ static int rest_length(const struct tokens *t, int i)
 	return 2 + is_more + 2 * (tokens_is(t, i, "of") && tokens_is(t, i + 1, "them|those|these"));
 }
 
+/* "How many?" and "how many are there?" */
+static int is_bare_count(const struct tokens *t)
+{
+	const int i = tokens_is(t, 0, "and|so");
+	const int is_there = tokens_is(t, i + 2, "are") && tokens_is(t, i + 3, "there");
+
+	return tokens_is(t, i, "how") && tokens_is(t, i + 1, "many") && t->n == i + 2 + 2 * is_there;
+}
+
 int talk_put_rest(const struct meaning_set *rest, const char *question, char to[QUESTION_TEXT])
 {
 	const char *noun = *rest->noun ? rest->noun : "thing",
@@ -221,7 +230,7 @@ int talk_put_rest(const struct meaning_set *rest, const char *question, char to[
 	int i = 0;
 
 	tokens_take(&t, question, NULL, NULL, 0);
-	snprintf(to, QUESTION_TEXT, "%s", question);
+	snprintf(to, QUESTION_TEXT, "%s", is_bare_count(&t) ? "how many of those are there?" : question);
 	const char *denied = rest->n ? find_denied(&t) : NULL;
 	if (denied) {
 		snprintf(to, QUESTION_TEXT, denied, noun, plural);

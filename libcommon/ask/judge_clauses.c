@@ -129,7 +129,7 @@ static int is_size(const struct parse_clause *c)
 	return c->degree == PARSE_PLAIN && c->relation >= PARSE_LARGER && c->relation <= PARSE_WIDER;
 }
 
-static enum relate_width width_of(const struct parse *p, const struct parse_phrase *f)
+static enum relate_width width_of(const struct parse *p, const struct parse_phrase *f, enum parse_relation r)
 {
 	int directions = 0;
 
@@ -137,7 +137,9 @@ static enum relate_width width_of(const struct parse *p, const struct parse_phra
 		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
 		directions += c->relation <= PARSE_BEHIND && !c->negated ? c->anchors.n : 0;
 	}
-	return f->count != PARSE_ONE ? RELATE_HALF_PLANE : directions > 1 ? RELATE_WIDE : RELATE_NARROW;
+	if (f->count != PARSE_ONE)
+		return r == PARSE_FRONT || r == PARSE_BEHIND ? RELATE_CONE : RELATE_HALF_PLANE;
+	return directions > 1 ? RELATE_WIDE : RELATE_NARROW;
 }
 
 /* How known the best known of a clause's anchors is. */
@@ -160,7 +162,7 @@ static double judge_relation(
 	const struct parse *p = m->sentence->parse;
 	struct relate_anchor anchors[ANCHORS];
 	const struct parse_phrase *f = &p->phrases[phrase];
-	struct relation r = {c->relation, c->degree, width_of(p, f), 0, 0, anchors};
+	struct relation r = {c->relation, c->degree, width_of(p, f, c->relation), 0, 0, anchors};
 	double known = 1;
 
 	if (counted_by(p, f, counts_along) == c)

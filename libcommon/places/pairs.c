@@ -71,6 +71,8 @@ static double on_side(const struct arrangement *a, const struct arranged *p, con
 	if (width == RELATE_HALF_PLANE)
 		return there;
 	const double straight = logistic((along - sideways_least) / sideways_soft);
+	if (width == RELATE_CONE)
+		return there * straight;
 	const double aslant = width == RELATE_WIDE ? sideways_wide : sideways_else;
 	return there * (aslant + (1 - aslant) * straight) * exp(-nearby * distance / a->spacing) *
 	       (1 - pair_stands_on(a, p, q)) * (1 - pair_stands_on(a, q, p));

@@ -5,8 +5,9 @@
 #include "places/arrangement.h"
 
 /* How much of the plane is left of, behind ... a thing: what lies near that direction; more of it, where two
- * such relations together tell; or half of it ("everything left of the plate"), however far away. */
-enum relate_width { RELATE_NARROW, RELATE_WIDE, RELATE_HALF_PLANE };
+ * such relations together tell; and however far away, a quarter ("everything behind the plate") or half of it
+ * ("everything left of the plate"). */
+enum relate_width { RELATE_NARROW, RELATE_WIDE, RELATE_CONE, RELATE_HALF_PLANE };
 
 /* How far p is in a relation of places to q: left of it, on it, near it. 0.5 for relations that are none. */
 double pair_fits(const struct arrangement *a, enum parse_relation relation, enum relate_width width,

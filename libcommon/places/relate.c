@@ -238,8 +238,7 @@ static void by_itself(
 	for (size_t o = 0; o < a->n; o++) {
 		const double side = alone(a, r->kind, fit, o);
 		/* of what nothing else is like, the side alone tells */
-		const double rank =
-			is_ordered && r->width != RELATE_HALF_PLANE ? 0.4 * rivalry(a, fit, o) : 0;
+		const double rank = is_ordered && r->width < RELATE_CONE ? 0.4 * rivalry(a, fit, o) : 0;
 		out[o] = rank * out[o] + (1 - rank) * side;
 	}
 }
