@@ -1,7 +1,6 @@
 /* Answers about the numbers of two kinds of things: whether there are more of one, as many, and how many
  * more. */
 #include "cmd/ask/answering.h"
-#include "cmd/ask/talk_words.h"
 
 #include "base/mem.h"
 
@@ -10,7 +9,7 @@
 
 size_t answering_count_kinds(const struct answer_told *t)
 {
-	char **names = t->asking->model.lifted.names, noun[CALLING_TEXT], other[CALLING_TEXT];
+	char **names = t->asking->model.lifted.names, noun[TALK_TEXT], other[TALK_TEXT];
 	const size_t *things = t->answer->things;
 	size_t kinds = 0;
 

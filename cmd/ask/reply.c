@@ -55,7 +55,10 @@ static int answer(struct answer_told *t, struct asking_answer *found, struct ask
 	if (bad)
 		return -1;
 	if (talk)
-		talk_take(talk, t, of != NULL);
+		talk_take(talk,
+			&(struct talk_answer){a->model.lifted.names, a->model.lifted.objects, &t->asked,
+				t->understood, found->things, found->count, found->runner_up, t->is_unsure},
+			of != NULL);
 	return 0;
 }
 

@@ -5,6 +5,7 @@
 #include "base/report.h"
 #include "cmd/ask/asking.h"
 #include "lang/question_kinds.h"
+#include "talk/talk.h"
 
 #include <stdio.h>
 
@@ -48,22 +49,6 @@ struct distance {
 	double gap, centres; /* between the boxes, 0 where they touch, and between their centres */
 };
 
-/* What a conversation was about last, for words that point back: "it", "the other one", "and the kettle?". */
-struct talk {
-	size_t thing, other;	      /* the thing that was answered, and "the other one"; ASKING_NONE */
-	int is_unsure;		      /* it was asked which of the two is meant */
-	char things[CALLING_TEXT];    /* "the mug and the cup": the two that were spoken of; "": it was one */
-	struct meaning_set set;	      /* "them": the last answer of several */
-	int is_several;		      /* it was the last one */
-	struct meaning_set of;	      /* which the last questions were about some of: "the red one" */
-	struct meaning_set rest;      /* the others of the kind that was answered */
-	char question[QUESTION_TEXT]; /* that was asked last, as it was understood; "": none */
-};
-#define TALK_NEW                                                                                             \
-	{                                                                                                    \
-		.thing = ASKING_NONE, .other = ASKING_NONE                                                   \
-	}
-
 /* Answers of refer-ask for a person or a program to read. */
 
 struct answer_told {
@@ -91,20 +76,6 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 /* What the things of an answer look like, in words: "black and grey", "steel, shiny", "not known". Cut
  * to fit. */
 void answer_looks(const struct answer_told *t, int is_colour, char *to, size_t room);
-
-/* A question with the things that its words point back to put in their place. names (objects). Returns the
- * things one of which is meant by their noun in it, or NULL. */
-const struct meaning_set *talk_understand(const struct talk *talk, char *const *names, size_t objects,
-	const char *question, char understood[QUESTION_TEXT]);
-
-/* Whether words of a text point back to what has to be known from before. */
-int talk_points(const char *text);
-
-/* Whether the last question told its things by their looks alone: "which mugs are brown?" */
-int talk_is_of_looks(const struct talk *talk);
-
-/* What is spoken of after an answer, which with is_within was of some of those before. */
-void talk_take(struct talk *talk, const struct answer_told *t, int is_within);
 
 /* A line for each thing, or for a distance, or one that says why there is none; after the explanation, where
  * there is one. */

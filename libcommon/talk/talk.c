@@ -1,17 +1,18 @@
 /* Words that point back to what was spoken of last. They are put right in the question's text, so that
  * everything else reads it as if it had been said in full. */
-#include "cmd/ask/talk_words.h"
+#include "talk/talk_words.h"
 
 #include "lang/closed.h"
 #include "lang/tokens.h"
 
+#include <stdio.h>
 #include <string.h>
 
 /* What several things are called, one of which has this name: "the bigger one" is one of those. "": no others
  * are. */
-static void find_shared(char *const *names, size_t objects, size_t thing, char words[CALLING_TEXT])
+static void find_shared(char *const *names, size_t objects, size_t thing, char words[TALK_TEXT])
 {
-	char other[CALLING_TEXT];
+	char other[TALK_TEXT];
 
 	for (int is_noun = 0; is_noun < 2; is_noun++) {
 		int n = 0;
@@ -176,22 +177,22 @@ static const struct meaning_set *understand_part(const struct talk *talk, const 
 }
 
 /* What to call a thing that has its number: "mug 1" beside "mug 2". */
-static void find_name(char *const *names, size_t objects, size_t thing, char name[CALLING_TEXT])
+static void find_name(char *const *names, size_t objects, size_t thing, char name[TALK_TEXT])
 {
-	const size_t n = thing == ASKING_NONE ? 0 : strlen(names[thing]);
+	const size_t n = thing == TALK_NONE ? 0 : strlen(names[thing]);
 	int has_other = 0;
 
 	for (size_t o = 0; o < objects && n; o++)
 		has_other |= !strncmp(names[o], names[thing], n) && names[o][n] == ' ' &&
 			     names[o][n + 1 + strspn(names[o] + n + 1, "0123456789")] == 0;
-	snprintf(name, CALLING_TEXT, "%s%s", n ? names[thing] : "", has_other ? " 1" : "");
+	snprintf(name, TALK_TEXT, "%s%s", n ? names[thing] : "", has_other ? " 1" : "");
 }
 
 /* What words may point to. */
 static void find_referents(const struct talk *talk, char *const *names, size_t objects,
 	const struct question_asked *last, struct referents *r)
 {
-	char about[QUESTION_TEXT], noun[TOKEN_LENGTH], other[CALLING_TEXT];
+	char about[QUESTION_TEXT], noun[TOKEN_LENGTH], other[TALK_TEXT];
 	int n = 0;
 
 	snprintf(r->things, sizeof r->things, "%s", talk->things);
@@ -241,7 +242,7 @@ const struct meaning_set *talk_understand(const struct talk *talk, char *const *
 	char of_those[QUESTION_TEXT], of_rest[QUESTION_TEXT];
 	struct tokens t;
 
-	if (!talk || !*talk->question || talk->thing == ASKING_NONE) {
+	if (!talk || !*talk->question || talk->thing == TALK_NONE) {
 		talk_put_pointed(&r, question, understood);
 		return NULL;
 	}

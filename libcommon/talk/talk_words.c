@@ -1,23 +1,24 @@
-#include "cmd/ask/talk_words.h"
+#include "talk/talk_words.h"
 
 #include "lang/closed.h"
 #include "lang/colours.h"
 #include "lang/tokens.h"
 
+#include <stdio.h>
 #include <string.h>
 
-void talk_name_words(const char *name, int is_noun, char words[CALLING_TEXT])
+void talk_name_words(const char *name, int is_noun, char words[TALK_TEXT])
 {
 	struct tokens t;
 	size_t n = 0;
 
 	*words = 0;
 	tokens_take(&t, name, NULL, NULL, 0);
-	for (int i = 0; i < t.n && n < CALLING_TEXT; i++)
+	for (int i = 0; i < t.n && n < TALK_TEXT; i++)
 		if (strspn(t.word[i].text, "0123456789") < strlen(t.word[i].text)) {
 			n = is_noun ? 0 : n;
 			n += (size_t)snprintf(
-				words + n, CALLING_TEXT - n, "%s%s", n ? " " : "", t.word[i].lemma);
+				words + n, TALK_TEXT - n, "%s%s", n ? " " : "", t.word[i].lemma);
 		}
 }
 
@@ -113,8 +114,8 @@ const char *talk_plural_end(const char *noun)
 }
 
 /* topic is where a thing is written that the question begins with: "the mug, how tall is it?" */
-static struct pointed points_to(const struct tokens *t, int i, const struct referents *r,
-	char topic[CALLING_TEXT], const char *question)
+static struct pointed points_to(
+	const struct tokens *t, int i, const struct referents *r, char topic[TALK_TEXT], const char *question)
 {
 	static const char it[] = "it|him|her|he|she";
 	static const char that[] = "that|this";
@@ -136,7 +137,7 @@ static struct pointed points_to(const struct tokens *t, int i, const struct refe
 	if (two_length(t, i) && *r->things)
 		return point("", r->things, "", i + two_length(t, i));
 	if (is_named_before(t, i, &of)) {
-		snprintf(topic, CALLING_TEXT, "%.*s", of.end - of.begin, question + of.begin);
+		snprintf(topic, TALK_TEXT, "%.*s", of.end - of.begin, question + of.begin);
 		const int is_topic =
 			!is_tag(t, i) && (tokens_is(t, i, it) || (tokens_is(t, i, that) && is_end));
 		return (struct pointed){"", is_topic && of.end ? topic : NULL, "", i + 1};
@@ -158,7 +159,7 @@ static struct pointed points_to(const struct tokens *t, int i, const struct refe
 
 unsigned talk_put_pointed(const struct referents *r, const char *question, char understood[QUESTION_TEXT])
 {
-	char topic[CALLING_TEXT];
+	char topic[TALK_TEXT];
 	struct question_asked q;
 	struct tokens t;
 	size_t n = 0;
@@ -233,7 +234,7 @@ int talk_put_rest(const struct meaning_set *rest, const char *question, char to[
 	snprintf(to, QUESTION_TEXT, "%s", is_bare_count(&t) ? "how many of those are there?" : question);
 	const char *denied = rest->n ? find_denied(&t) : NULL;
 	if (denied) {
-		snprintf(to, QUESTION_TEXT, denied, noun, plural);
+		snprintf(to, QUESTION_TEXT, denied, noun, *denied == 'h' ? talk_plural_end(noun) : plural);
 		return 1;
 	}
 	while (i < t.n && !rest_length(&t, i))
@@ -248,7 +249,7 @@ int talk_put_rest(const struct meaning_set *rest, const char *question, char to[
 int talk_points(const char *question)
 {
 	const struct referents nothing = {0};
-	char topic[CALLING_TEXT];
+	char topic[TALK_TEXT];
 	struct tokens t;
 
 	tokens_take(&t, question, NULL, NULL, 0);

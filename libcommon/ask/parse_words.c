@@ -1,4 +1,4 @@
-#include "cmd/ask/explain.h"
+#include "ask/refusal.h"
 
 #include "base/utf8.h"
 

@@ -1,13 +1,13 @@
 /* What words of a question point back to: "it", "the other one", "those", "the left one". */
 #pragma once
 
-#include "cmd/ask/reply.h"
 #include "lang/tokens.h"
+#include "talk/talk.h"
 
 /* What words of a question may point to; "" where there is no such thing. */
 struct referents {
-	char name[CALLING_TEXT], other[CALLING_TEXT], things[CALLING_TEXT];
-	char noun[CALLING_TEXT], kind[CALLING_TEXT]; /* of "the left one", and of "the red one" */
+	char name[TALK_TEXT], other[TALK_TEXT], things[TALK_TEXT];
+	char noun[TALK_TEXT], kind[TALK_TEXT]; /* of "the left one", and of "the red one" */
 };
 
 /* What words pointed to, as bits. */
@@ -19,9 +19,6 @@ unsigned talk_put_pointed(const struct referents *r, const char *question, char 
 /* The question with the rest of what was spoken of in place of words for that: "the others", "how many
  * don't?". Returns whether it has such words. */
 int talk_put_rest(const struct meaning_set *rest, const char *question, char to[QUESTION_TEXT]);
-
-/* The words of a name but for numbers; with is_noun the last of them alone. */
-void talk_name_words(const char *name, int is_noun, char words[CALLING_TEXT]);
 
 /* Whether a word says a look: of "the red one" another thing of the kind is meant. */
 int talk_says_look(const struct tokens *t, int i);
