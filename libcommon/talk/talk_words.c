@@ -201,17 +201,18 @@ static const char *find_denied(const struct tokens *t)
 	return is_many ? "how many %s%s are there" : "the %s%s";
 }
 
-/* "the rest", "the others", "the remaining two of them": how many words from word i on are the whole of it.
- */
+/* "the rest", "the others", "the remaining two of them", "any others": how many words from word i on are the
+ * whole of it but for "any". */
 static int rest_length(const struct tokens *t, int i)
 {
-	const int is_more =
-		tokens_is(t, i + 1, "other|remaining") && tokens_is(t, i + 2, "ones|two|three|four");
+	const int is_the = tokens_is(t, i, "the");
+	const int is_more = is_the && tokens_is(t, i + 1, "other|remaining") &&
+			    tokens_is(t, i + 2, "ones|two|three|four");
+	const int n = is_more  ? 3
+		      : is_the ? 2 * tokens_is(t, i + 1, "rest|others")
+			       : tokens_is(t, i, "others");
 
-	if (!tokens_is(t, i, "the") || (!is_more && !tokens_is(t, i + 1, "rest|others")))
-		return 0;
-	i += 2 + is_more;
-	return 2 + is_more + 2 * (tokens_is(t, i, "of") && tokens_is(t, i + 1, "them|those|these"));
+	return n && tokens_is(t, i + n, "of") && tokens_is(t, i + n + 1, "them|those|these") ? n + 2 : n;
 }
 
 /* "How many?" and "how many are there?" */
@@ -241,7 +242,8 @@ int talk_put_rest(const struct meaning_set *rest, const char *question, char to[
 		i++;
 	if (i == t.n || !rest->n)
 		return 0;
-	snprintf(to, QUESTION_TEXT, "%.*sthe %s%s%s", t.word[i].span.begin, question, noun, plural,
+	snprintf(to, QUESTION_TEXT, "%.*s%s%s%s%s", t.word[i].span.begin, question,
+		tokens_is(&t, i, "the") ? "the " : "", noun, plural,
 		question + t.word[i + rest_length(&t, i) - 1].span.end);
 	return 1;
 }

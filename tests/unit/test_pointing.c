@@ -47,6 +47,7 @@ static void several(void)
 	is(&talk, "how many?", "how many of the mugs are there?", 2);
 	is(&talk, "and how many aren't?", "how many mugs are there", 1);
 	is(&talk, "where are the others?", "where are the mug?", 1);
+	is(&talk, "are there any others?", "are there any mug?", 1);
 	is(&talk, "which box has nothing on it?", "which box has nothing on it?", 0);
 	is(&talk, "how many boxes have nothing on them?", "how many boxes have nothing on them?", 0);
 }
