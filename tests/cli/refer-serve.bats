@@ -247,6 +247,18 @@ refused() {
 	wait $(jobs -p | grep -vx "$(cat run.pid)") 2>/dev/null || true
 }
 
+@test "of a thousand connections at once few are taken, and when they are gone it answers" {
+	port=${ADDRESS##*:}
+	(
+		for _ in $(seq 1000); do
+			exec {fd}<>"/dev/tcp/127.0.0.1/$port"
+		done
+		ls "/proc/$(cat run.pid)/fd" >taken
+	) 3>&-
+	[ "$(wc -l <taken)" -lt 100 ]
+	echo '{"question": "box"}' | post ask -m 20 | jq -e '.question == "box"'
+}
+
 @test "it ends cleanly, and the port that another has is told" {
 	cp -r nameless ends
 	serve ends -v
