@@ -309,6 +309,21 @@ static int leave_out(struct masks *set, long *lines, size_t *views, const char *
 	return 0;
 }
 
+/* Of many masks hardly half cover half of their view, unless black and white are exchanged. */
+static void warn_inverted(const struct masks *set, const char *path, const struct report *to)
+{
+	size_t large = 0;
+
+	for (size_t i = 0; i < set->n; i++) {
+		const struct rle *rle = &set->items[i].rle;
+		large += 2 * rle_area(rle) > (size_t)rle->height * (size_t)rle->width;
+	}
+	if (set->n >= 8 && 2 * large > set->n)
+		report_warn(to,
+			"%s: %zu of %zu masks cover more than half of their view: are they inverted, black where the thing is?",
+			file_name(path), large, set->n);
+}
+
 int masks_views(struct masks *set, long *lines, const char *path, const struct cameras *cameras,
 	size_t *views, const struct report *to, struct err *e)
 {
@@ -325,6 +340,8 @@ int masks_views(struct masks *set, long *lines, const char *path, const struct c
 			bad = masks_check_shape(&set->items[i], "the view", cameras->views[at].height,
 				cameras->views[at].width, path, lines[i], e);
 	}
+	if (views && !bad)
+		warn_inverted(set, path, to);
 	return bad || (views && set->n && leave_out(set, lines, views, path, &names, to, e)) ? -1 : 0;
 }
 

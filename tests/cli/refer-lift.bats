@@ -205,6 +205,10 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 	jq -c '.object |= ascii_upcase | del(.ref)' masks.jsonl >upper
 	says 3 "refer-lift: upper: no mask of a training view is of a training sentence's object of text.safetensors: names are compared letter by letter" lift -q --masks upper -o none
 	[ ! -e none ]
+	jq -c '.segmentation |= (.counts = [0, .size[0] * .size[1]])' masks.jsonl >full
+	n=$(wc -l <full)
+	lift --masks full -o odd 2>err || true
+	grep -q "^refer-lift: warning: full: $n of $n masks cover more than half of their view: are they inverted, black where the thing is?$" err
 }
 
 @test "no masks: an empty model, and a warning for each object" {

@@ -127,6 +127,9 @@ refused() {
 		images.txt|x|a text file: of a COLMAP model, give the folder with cameras.txt and images.txt
 		images.bin|x|a part of a COLMAP model: give the model's folder
 		other|x|neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json
+		l.json|[{"id":1,"annotations":[],"data":{}}]|an export of Label Studio: export it as COCO there, or its brush masks as PNG
+		s.json|[{"segmentation":{},"predicted_iou":1}]|masks of Segment Anything, which have no names: mask-import reads those of Grounded-SAM-2, which have
+		b.json|[{"value":0,"label":"background"}]|boxes of Grounded-Segment-Anything, without masks: mask-import reads the masks of Grounded-SAM-2
 		r.json|{"K":[1],"poses":[]}|cameras of Record3D: 'ns-process-data record3d' makes a transforms.json of the capture
 		n.json|[{"file_path":"a","transform":[]}]|cameras of nerfstudio's 'ns-export cameras': give the transforms.json that it trained with, and put its dataparser_transforms.json beside the splats
 		p.json|{"camera_path":[],"render_height":1}|a camera path of nerfstudio's viewer: $trained
