@@ -5,7 +5,7 @@
 #include "synth/synth_scene.h"
 
 static long long objects, views, gaussians, times;
-static int number, size[2];
+static int number, size[2], is_wording_seen;
 
 static const struct cli_option options[] = {
 	CLI_ONE_OF("scene", &number, "table|diner|toys|tea|kitchen", "what is made (default table)"),
@@ -18,6 +18,8 @@ static const struct cli_option options[] = {
 		"size of the photographs in pixels (default 492x364; of the table 320x240)", 16, 4096},
 	{"gaussians", 0, CLI_INT, &gaussians, "N", "Gaussians (default 60000; of the table 20000)", 1000,
 		10000000},
+	{"seen-wording", 0, CLI_FLAG, &is_wording_seen, NULL, "test sentences in wordings of training ones",
+		0, 0},
 	{"moving", 0, CLI_INT, &times, "N",
 		"a scene that moves: frames of N times, and sentences of what moves how", 1, SYNTH_MAX_TIMES},
 	{0},
@@ -43,7 +45,7 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 		cli_usage(c, "-o must name a folder");
 	b.options = (struct synth_options){p, 0, objects ? (int)objects : p->objects,
 		views ? (int)views : p->views, size[0] ? size[0] : p->width, size[0] ? size[1] : p->height,
-		gaussians ? (size_t)gaussians : p->gaussians, (int)times};
+		gaussians ? (size_t)gaussians : p->gaussians, is_wording_seen, (int)times};
 	return benchmark_make(&b, number, (uint64_t)c->seed, e) || benchmark_write(&b, c->output, to, e) ? -1
 													 : 0;
 }

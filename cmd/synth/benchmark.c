@@ -34,7 +34,7 @@ static int make_once(struct benchmark *b, struct err *e)
 	if (synth_scene_make(s, &b->options, e))
 		return -1;
 	synth_viewpoint_reference(&v, s->objects, s->object_count, &s->table, &s->cameras, 0);
-	if (synth_sentences_make(&b->sentences, &v, b->options.seed, e) ||
+	if (synth_sentences_make(&b->sentences, &v, b->options.seed, b->options.is_wording_seen, e) ||
 		synth_unseen_make(
 			&b->unseen, s->objects, s->object_count, &s->table, &s->cameras, b->options.seed, e))
 		return -1;

@@ -38,7 +38,8 @@ struct synth_options {
 	uint64_t seed; /* synth_preset_seed */
 	int objects, views, width, height;
 	size_t gaussians;
-	int times; /* of a scene that moves, or that has room for it (1); 0: none */
+	int is_wording_seen; /* test sentences are in wordings of training ones */
+	int times;	     /* of a scene that moves, or that has room for it (1); 0: none */
 };
 
 /* Number 0 is the plain table. NULL where there is no such number. */

@@ -102,8 +102,10 @@ enum {
 /* Items (n objects, SYNTH_SENTENCES), of 13.6 words on average, with objects for a and b of their relations.
  * A test sentence has a frame and wordings of relations that no training sentence has, and no pair of colour
  * word and noun that a training sentence of its object has. Returns 0, or -1 with *e set (ERR_CHECK) where
- * some object cannot be told apart in words; another seed then helps. After either *list may be freed. */
-int synth_sentences_make(
-	struct synth_sentences *list, const struct synth_viewpoint *v, uint64_t seed, struct err *e);
+ * some object cannot be told apart in words; another seed then helps. After either *list may be freed. Where
+ * is_wording_seen, the frame of a test sentence is another than its object's, but frame and relations are
+ * worded as in training. */
+int synth_sentences_make(struct synth_sentences *list, const struct synth_viewpoint *v, uint64_t seed,
+	int is_wording_seen, struct err *e);
 
 int synth_count_words(const char *text);

@@ -27,7 +27,7 @@ struct draft {
 	const struct synth_viewpoint *v;
 	struct rng *rng;
 	enum stage stage;
-	int is_test, among[SYNTH_MAX_OBJECTS];
+	int is_test_worded, among[SYNTH_MAX_OBJECTS];
 };
 
 /* among (n) gets the verdicts of the target's words. Returns how many objects they fit. */
@@ -199,7 +199,8 @@ static int add_clause(struct draft *d, const char *slot)
 
 	if (s->clause_count == MAX_CLAUSES || choose_clause(d, slot, &c))
 		return -1;
-	const struct synth_query q = {.list = d->is_test ? SYNTH_SAID_TEST : SYNTH_SAID, .like = c.kind};
+	const struct synth_query q = {
+		.list = d->is_test_worded ? SYNTH_SAID_TEST : SYNTH_SAID, .like = c.kind};
 	c.said = synth_draw(d->w, &q, d->rng);
 	for (; c.anchor_count < c.kind->anchors; c.anchor_count++) {
 		c.anchors[c.anchor_count] = name_anchor(d, c.anchor_count ? c.is.b : c.is.a);
@@ -308,10 +309,10 @@ static int is_pair_known(const struct synth_sentence *s, const struct synth_sent
 /* Appends sentence number `done` of an object, of about `wanted` words; frames: those that its training
  * sentences have had. Returns the number of words, 0 where none was found, or -1 with *e set. */
 static int say(struct synth_sentences *list, int object, int done, const struct synth_row **frames,
-	int wanted, const struct synth_viewpoint *v, struct rng *r, struct err *e)
+	int wanted, const struct synth_viewpoint *v, int is_wording_seen, struct rng *r, struct err *e)
 {
-	int is_test = done >= SYNTH_TRAIN_SENTENCES;
-	const struct synth_query q = {.list = is_test ? SYNTH_TEST : SYNTH_TRAIN};
+	int is_test = done >= SYNTH_TRAIN_SENTENCES, is_test_worded = is_test && !is_wording_seen;
+	const struct synth_query q = {.list = is_test_worded ? SYNTH_TEST : SYNTH_TRAIN};
 
 	for (int tries = 0; tries < STAGES * TRIES_OF_STAGE; tries++) {
 		const struct synth_sentence *earlier = done ? list->items + list->n - done : NULL;
@@ -320,7 +321,7 @@ static int say(struct synth_sentences *list, int object, int done, const struct 
 			.w = &list->wordings,
 			.v = v,
 			.rng = r,
-			.is_test = is_test,
+			.is_test_worded = is_test_worded,
 			.stage = stage};
 		int is_used = 0;
 		const struct synth_row *frame = synth_draw(d.w, &q, r);
@@ -344,8 +345,8 @@ static int say(struct synth_sentences *list, int object, int done, const struct 
 	return 0;
 }
 
-int synth_sentences_make(
-	struct synth_sentences *list, const struct synth_viewpoint *v, uint64_t seed, struct err *e)
+int synth_sentences_make(struct synth_sentences *list, const struct synth_viewpoint *v, uint64_t seed,
+	int is_wording_seen, struct err *e)
 {
 	struct rng r;
 	double owed = 0; /* words that the sentences so far are short of the mean */
@@ -358,7 +359,7 @@ int synth_sentences_make(
 		const struct synth_row *frames[SYNTH_SENTENCES];
 		for (int k = 0; k < SYNTH_SENTENCES; k++) {
 			int wanted = usual_words[rng_below(&r, USUAL)] + (int)lrint(owed / 2);
-			int words = say(list, i, k, frames, wanted, v, &r, e);
+			int words = say(list, i, k, frames, wanted, v, is_wording_seen, &r, e);
 			if (words < 0)
 				return -1;
 			if (!words)

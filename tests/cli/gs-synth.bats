@@ -306,3 +306,13 @@ interrupted() {
 	[ "$(overlap out/whole.jsonl .miou)" = 1 ]
 	[ "$(overlap out/truth.jsonl '.miou > 0.6 and .miou < 0.99')" = true ]
 }
+
+@test "--seen-wording: no test sentence has a wording of test sentences; training sentences are the same" {
+	small --scene diner --seed 3 -o own
+	small --scene diner --seed 3 --seen-wording -o seen
+	cmp <(head -n 4 own/sentences.jsonl) <(head -n 4 seen/sentences.jsonl)
+	sed -n 's/^said-test\t\([^%\t]*\) .*/\1/p' "$BATS_TEST_DIRNAME/../../libcommon/synth/sentences.tsv" | grep " .* " >wordings
+	[ -s wordings ]
+	jq -r 'select(.split == "test") | .text' own/sentences.jsonl | grep -F -f wordings >/dev/null
+	[ "$(jq -r 'select(.split == "test") | .text' seen/sentences.jsonl | grep -c -F -f wordings)" = 0 ]
+}

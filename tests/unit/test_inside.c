@@ -102,7 +102,7 @@ static void a_box_goes_without_what_is_in_it(void)
 static void of_a_scene_more_is_taken_and_little_of_others(void)
 {
 	const struct synth_preset *p = synth_preset(0);
-	const struct synth_options o = {p, 5, p->objects, p->views, p->width, p->height, 8000, 0};
+	const struct synth_options o = {p, 5, p->objects, p->views, p->width, p->height, 8000, 0, 0};
 	static const double up[3] = {0, 0, 1};
 	double before = 0, after = 0, wrong = 0, all = 0;
 	struct synth_scene s;

@@ -137,7 +137,7 @@ static int make(struct made *m, int number, uint64_t seed)
 	if (!CHECK(!synth_cameras_make(&m->cameras, &options, &table, &e), "%s", e.message))
 		return -1;
 	synth_viewpoint_reference(&v, m->objects, m->n, &table, &m->cameras, 0);
-	if (!CHECK(!synth_sentences_make(&m->sentences, &v, seed, &e), "%s", e.message)) {
+	if (!CHECK(!synth_sentences_make(&m->sentences, &v, seed, 0, &e), "%s", e.message)) {
 		free_made(m);
 		return -1;
 	}

@@ -23,7 +23,7 @@ struct world {
 static int world_make(struct world *w, int number, uint64_t seed)
 {
 	const struct synth_preset *p = synth_preset(number);
-	struct synth_options o = {p, seed, p->objects, p->views, 64, 48, 1000, 0};
+	struct synth_options o = {p, seed, p->objects, p->views, 64, 48, 1000, 0, 0};
 	struct err e = {0};
 
 	w->n = p->objects;

@@ -334,7 +334,7 @@ static void sentences_of(uint64_t seed, int n, struct tally *t)
 		synth_viewpoint_reference(&v, o, n, &table, &c, 0);
 		cameras_free(&c);
 		synth_sentences_free(&list);
-		is_impossible = synth_sentences_make(&list, &v, options.seed, &e);
+		is_impossible = synth_sentences_make(&list, &v, options.seed, 0, &e);
 	}
 	const struct synth_sentence *s = list.items;
 	if (!CHECK(!is_impossible && (int)list.n == total, "%s", e.message)) {
