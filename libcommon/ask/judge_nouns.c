@@ -51,11 +51,14 @@ static int is_said_of_something(struct meaning *m, int word, double *match)
 	return largest(match, objects_of(m)) > ATTRIBUTE_SAID;
 }
 
-/* "That are not light": no lamp, but a word that is said of things. */
+/* "That are not light", "not made of glass": no lamp, but a word that is said of things. */
 static int is_denied_look(const struct parse *p, const struct parse_phrase *f, int head)
 {
-	return f->noun.n == 1 && !f->attributes.n && wordnet_is_adjective(p->words[head].lemma) &&
-	       closed_class_of(p, head - 1) == CLOSED_NEGATION && !parse_word_is(p, head - 1, "no|without");
+	if (f->noun.n != 1 || f->attributes.n)
+		return 0;
+	return (parse_word_is(p, head - 1, "of|from") && parse_word_is(p, head - 2, "made|built|cut")) ||
+	       (wordnet_is_adjective(p->words[head].lemma) && closed_class_of(p, head - 1) == CLOSED_NEGATION &&
+		       !parse_word_is(p, head - 1, "no|without"));
 }
 
 /* "The white gadget": a thing whose name is not said, and few things called so are called so here. */

@@ -22,11 +22,12 @@ static int noun_after(const struct analysis *a, const struct tokens *t, int i)
 	return -1;
 }
 
-/* "the door that isn't brown": brown ones are left out. */
+/* "the door that isn't brown", "isn't made of wood": such are left out. */
 static void take_isnt(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i + 1 < t->n; i++) {
-		const int next = tokens_class(t, i + 1) == CLOSED_ADVERB ? i + 2 : i + 1;
+		int next = tokens_class(t, i + 1) == CLOSED_ADVERB ? i + 2 : i + 1;
+		next += tokens_is(t, next, "made|built|cut") && tokens_is(t, next + 1, "of|from") ? 2 : 0;
 		if (tokens_class(t, i) == CLOSED_NEGATION && !tokens_is(t, i, "no|without") && next < t->n &&
 			!t->word[next].before && a->word[next].role == ROLE_ATTRIBUTE &&
 			a->word[next].head < next && noun_after(a, t, next) < 0)
