@@ -279,13 +279,9 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 		return;
 	}
 	const int head = meaning_head_of(p, f);
-	/* "between the cup and the jar" is none of them, and roses in a vase may be what is called a vase
-	 * here */
-	for (size_t o = 0; o < n; o++)
-		value[o] = head < 0 && !f->noun.n ? value[o] * (1 - ANCHOR_UNLIKE * is_anchor(m, c, o))
-			   : head >= 0 && c->relation == PARSE_INSIDE
-				   ? fmax(value[o], OWN_HOLDER * is_anchor(m, c, o))
-				   : value[o];
+	/* roses in a vase may be what is called a vase here */
+	for (size_t o = 0; o < n && head >= 0 && c->relation == PARSE_INSIDE; o++)
+		value[o] = fmax(value[o], OWN_HOLDER * is_anchor(m, c, o));
 	judge_said(m, c, said);
 	/* nothing is beside what is not here: a denial of it is true, and of "all that is on the sill"
 	 * nothing is known */
