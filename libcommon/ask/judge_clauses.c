@@ -2,7 +2,6 @@
 #include "ask/constants.h"
 #include "ask/judge_clauses.h"
 #include "ask/judge_words.h"
-#include "lang/closed.h"
 #include "lang/compared.h"
 #include "lang/finish.h"
 #include "places/relate.h"
@@ -263,9 +262,7 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	}
 	if (judge_by_place(m, c, counted_by(p, f, counts_along) == c ? f->ordinal : 1, fit, value))
 		return;
-	/* what hangs and stands on nothing that is named is said to */
-	if (c->relation == PARSE_OTHER || (c->relation == PARSE_ON && !c->anchors.n && c->words.n &&
-						  closed_class_of(p, c->words.item[0]) == CLOSED_POSE)) {
+	if (c->relation == PARSE_OTHER) {
 		judge_predicate(m, c, value);
 		return;
 	}
