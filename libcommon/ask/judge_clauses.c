@@ -366,21 +366,6 @@ void judge_clauses(struct meaning *m, int phrase)
 	judge_turn(m, phrase, fit_of(m, phrase), AT_ONCE);
 }
 
-/* before (O): how far each is one of those that are compared. "Of the two cups": the two that fit best alike. */
-static void take_group(size_t n, int group, double *before)
-{
-	double least = INFINITY;
-
-	for (size_t o = 0; o < n; o++) {
-		int better = 0;
-		for (size_t k = 0; k < n; k++)
-			better += before[k] > before[o];
-		least = better < group ? fmin(least, before[o]) : least;
-	}
-	for (size_t o = 0; o < n && group > 1; o++)
-		before[o] = fmin(before[o] * before[o] / fmax(least, 1e-9), least);
-}
-
 void judge_order(struct meaning *m, int phrase)
 {
 	const struct parse *p = m->sentence->parse;
@@ -396,8 +381,6 @@ void judge_order(struct meaning *m, int phrase)
 	for (size_t o = 0; o < n; o++)
 		before[o] *= sqrt(before[o]);
 	judge_turn(m, phrase, before, BY_DEGREE);
-	if (!f->ordinal)
-		return;
-	take_group(n, f->group, before);
-	judge_ordinal(m, phrase, before);
+	if (f->ordinal)
+		judge_ordinal(m, phrase, before);
 }

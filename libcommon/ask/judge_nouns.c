@@ -57,7 +57,8 @@ static int is_denied_look(const struct parse *p, const struct parse_phrase *f, i
 	if (f->noun.n != 1 || f->attributes.n)
 		return 0;
 	return (parse_word_is(p, head - 1, "of|from") && parse_word_is(p, head - 2, "made|built|cut")) ||
-	       (wordnet_is_adjective(p->words[head].lemma) && closed_class_of(p, head - 1) == CLOSED_NEGATION &&
+	       (wordnet_is_adjective(p->words[head].lemma) &&
+		       closed_class_of(p, head - 1) == CLOSED_NEGATION &&
 		       !parse_word_is(p, head - 1, "no|without"));
 }
 

@@ -7,7 +7,6 @@
 #include "lang/compared.h"
 #include "lang/parse_private.h"
 #include "lang/rules.h"
-#include "lang/wordnet.h"
 
 static int add_words(struct build *b)
 {
@@ -55,12 +54,7 @@ static int add_phrases(struct build *b)
  * "coloured" by itself does. */
 static int says_nothing(const struct tokens *t, int i)
 {
-	/* "bottle-green" is no bottle */
-	const int is_shade = i + 1 < t->n && !t->word[i + 1].before && t->word[i].closed < 0 &&
-			     colour_word(t->word[i].text) < 0 && colour_word(t->word[i + 1].text) >= 0 &&
-			     wordnet_is_noun(t->word[i].lemma) && !wordnet_is_adjective(t->word[i].text);
-
-	return is_shade || tokens_is(t, i, "'s|side|hand|end|colour|color|piece|sized|shaped") ||
+	return tokens_is(t, i, "'s|side|hand|end|colour|color|piece|sized|shaped") ||
 	       (tokens_is(t, i, "coloured|colored") && i && colour_word(t->word[i - 1].text) >= 0);
 }
 
