@@ -92,25 +92,6 @@ static int is_colour(const struct parse *p, int head)
 	return !rows.n || !parse_word_is(p, head - 1, "a|an|any|my|the|your");
 }
 
-/* "Black puffer coat": where nothing is called by what was taken for the noun, the noun after it. match (O)
- * in and out. Returns the one that counts. */
-static int judge_last(struct meaning *m, const struct parse_phrase *f, int head, double *match)
-{
-	const struct parse *p = m->sentence->parse;
-	const int next = head + 1;
-	double *other = m->scratch + 8 * objects_of(m);
-
-	if (largest(match, objects_of(m)) >= 0.5 ||
-		!(parse_list_has(&p->unexplained, next) || parse_list_has(&f->attributes, next)) ||
-		!wordnet_is_noun(p->words[next].lemma))
-		return head;
-	vocabulary_noun(m->vocabulary, m->sentence, next, other);
-	if (largest(other, objects_of(m)) < 0.5)
-		return head;
-	memcpy(match, other, objects_of(m) * sizeof *match);
-	return next;
-}
-
 /* "Mug 2" is the one of that name, where there is one, and "mug 1" the one whose name has no number. */
 static void judge_number(const struct meaning *m, int head, double *match)
 {
@@ -164,7 +145,6 @@ void judge_noun(struct meaning *m, int phrase)
 	m->vocabulary->of_several = f->count != PARSE_ONE;
 	vocabulary_noun(m->vocabulary, m->sentence, head, match);
 	m->vocabulary->of_several = 0;
-	head = judge_last(m, f, head, match);
 	judge_number(m, head, match);
 	for (size_t o = 0; o < n && m->naming != 1; o++) /* those that are not found yet are no anchors */
 		match[o] *= m->arrangement->objects[o].is_there;
