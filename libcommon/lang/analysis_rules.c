@@ -89,37 +89,6 @@ static void take_empty(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* The predicate of a place on the word before i, or -1. */
-static int place_before(const struct analysis *a, const struct tokens *t, int i)
-{
-	for (int j = i - 1; j >= 0 && j >= i - 3 && tokens_class(t, j) >= 0; j--)
-		if (tokens_class(t, j) == CLOSED_PLACE &&
-			closed_words[t->word[j].closed].relation == PARSE_ON && analysis_is_predicate(a, j))
-			return j;
-	return -1;
-}
-
-/* "the cups standing on something": they are on it, and do not carry it. */
-static void take_something(struct analysis *a, const struct tokens *t)
-{
-	for (int i = 1; i < t->n; i++) {
-		const int place = tokens_is(t, i, "something|anything") ? place_before(a, t, i) : -1;
-		if (place < 0 ||
-			(a->word[place].relation != PARSE_SUPPORTS &&
-				(a->word[place].relation != PARSE_ON || a->word[i].role != ROLE_NONE ||
-					analysis_has_anchor(a, place))))
-			continue;
-		for (int j = 0; j < place && a->word[i].role == ROLE_TARGET; j++)
-			if (a->word[j].role == ROLE_ANCHOR && a->word[j].head == place) {
-				a->word[j] = (struct analysis_word){.role = ROLE_TARGET, .head = ROOT};
-				a->word[place].head = ROOT;
-				break;
-			}
-		a->word[place].relation = PARSE_ON;
-		a->word[i] = (struct analysis_word){.role = ROLE_ANCHOR, .head = place};
-	}
-}
-
 /* Whether a word is said of something as a look or a size. */
 static int is_said_of_looks(const struct analysis_word *w)
 {
@@ -303,8 +272,6 @@ void analysis_apply_rules(struct analysis *a, const struct tokens *t, unsigned w
 		take_doubled(a, t);
 	if (rule_counts(without, RULE_empty))
 		take_empty(a, t);
-	if (rule_counts(without, RULE_something))
-		take_something(a, t);
 	if (rule_counts(without, RULE_compared))
 		take_compared(a, t);
 	analysis_repair(a);

@@ -81,7 +81,7 @@ static double count_lanes(const struct render_view *v)
 				const uint64_t column = blend_column(&chunk, block);
 				visits += (size_t)__builtin_popcountll(column);
 				if (column)
-					blend_block_weights(&t, &chunk, column, block, list + k, NULL);
+					blend_block_counts(&t, &chunk, column, block);
 			}
 		}
 	}

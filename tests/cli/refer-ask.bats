@@ -62,7 +62,7 @@ setup() {
 
 @test "what is not here is refused, with the reason and status 1" {
 	says 1 "nothing here is that: nothing here is known as 'sofa'" ask run "where is the sofa?"
-	says 1 "nothing here is that: the question has no words" ask run '​'
+	says 1 "nothing here is that: the question has no words" ask run $'\u0301'
 	thing=$(head -n 1 things)
 	says 1 "nothing here is that: $thing comes nearest, but 'blue' does not fit it" ask run "the blue ${thing##* }"
 	run ask --json run "the blue ${thing##* }"
