@@ -39,7 +39,7 @@ static const struct cli_option options[] = {
 	CLI_ONE_OF("method", &method, "both|grammar",
 		"by word vectors and closed-class words, or by closed-class words alone (default both)"),
 	CLI_TEXT("without", &list, "RULE,...",
-		"leave out rules: isnt, viewer, over_by, corner, doubled, empty, something, compared, from, group, content, one_of, members, companion"),
+		"leave out rules: isnt, viewer, over_by, corner, doubled, empty, who, compared, from, group, content, one_of, members, companion"),
 	{0},
 };
 

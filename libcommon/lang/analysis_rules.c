@@ -89,6 +89,29 @@ static void take_empty(struct analysis *a, const struct tokens *t)
 	}
 }
 
+/* "Who is wearing the scarf?" asks for whoever has it, not for the scarf. */
+static void take_who(struct analysis *a, const struct tokens *t)
+{
+	int who = 0, predicate, noun = 0;
+
+	while (who < t->n && !tokens_is(t, who, "who"))
+		who++;
+	for (predicate = who + 1; predicate < t->n && !analysis_is_predicate(a, predicate);)
+		predicate++;
+	while (noun < t->n && a->word[noun].role != ROLE_TARGET)
+		noun++;
+	if (predicate >= t->n || noun >= t->n || noun < who || a->word[who].role != ROLE_NONE ||
+		analysis_has_anchor(a, predicate))
+		return;
+	for (int i = 0; i < t->n; i++)
+		if (a->word[i].role == ROLE_ATTRIBUTE && a->word[i].head == ROOT)
+			a->word[i].head = noun;
+	a->word[noun].role = ROLE_ANCHOR;
+	a->word[noun].head = predicate;
+	a->word[who] = (struct analysis_word){.role = ROLE_TARGET, .head = ROOT};
+	a->word[predicate].head = who;
+}
+
 /* Whether a word is said of something as a look or a size. */
 static int is_said_of_looks(const struct analysis_word *w)
 {
@@ -272,6 +295,8 @@ void analysis_apply_rules(struct analysis *a, const struct tokens *t, unsigned w
 		take_doubled(a, t);
 	if (rule_counts(without, RULE_empty))
 		take_empty(a, t);
+	if (rule_counts(without, RULE_who))
+		take_who(a, t);
 	if (rule_counts(without, RULE_compared))
 		take_compared(a, t);
 	analysis_repair(a);

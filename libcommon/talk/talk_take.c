@@ -148,5 +148,5 @@ void talk_take(struct talk *talk, const struct talk_answer *a, int is_within)
 					   : find_other(talk, a, thing);
 	take_rest(talk, a, is_within);
 	take_things(talk, a, is_within || (*talk->things && strstr(a->understood, talk->things)));
-	memcpy(talk->question, a->understood, sizeof talk->question);
+	snprintf(talk->question, sizeof talk->question, "%s", a->understood);
 }
