@@ -217,14 +217,14 @@ static size_t root(size_t *parent, size_t i)
 /* The side of a cell: 0 where all Gaussians are in one place. */
 static double cell_side(const struct cloud *c, double low[3])
 {
-	double square = 0;
+	double square = 0, even = 1.8; /* from the middle half, which strays do not stretch, to nine tenths */
 
 	for (int k = 0; k < 3; k++) {
 		for (size_t i = 0; i < c->n; i++)
 			c->items[i] = (struct quantile_item){c->means[3 * i + (size_t)k], c->weight[i]};
 		const double from = quantile_weighted(c->items, c->n, 0.25),
 			     to = quantile_weighted(c->items, c->n, 0.75);
-		square += 3.24 * (to - from) * (to - from);
+		square += even * even * (to - from) * (to - from);
 		low[k] = from;
 	}
 	return EXTENT_SPACING * sqrt(square / (double)c->n);
