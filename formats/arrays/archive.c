@@ -129,7 +129,8 @@ int archive_read(struct archive *a, const char *file, char **data, size_t *len, 
 	}
 	const size_t entry = names_find(&a->index, file);
 	if (entry == NAMES_NONE)
-		return err_file(e, a->name, "no file '%.80s' in the zip", file);
+		return err_file(
+			e, a->name, "no file '%.80s' in the zip: unzip it if it is a packed file", file);
 	return archive_read_entry(a, entry, data, len, e);
 }
 

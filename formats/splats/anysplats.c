@@ -42,14 +42,14 @@ int anysplats_read_like(struct splats *s, double offset[3], struct rows_report *
 	if (!is_ply && !spz_is(&map) && !glb_is(&map) &&
 		foreign_file(name, FOREIGN_SPLATS, map.data, map.len, e))
 		return -1;
-	if (!is_ply && (spz_is(&map) || path_ends(name, ".spz")))
-		return spz_read_map(s, offset, report, name, &map, e);
-	if (!is_ply && path_ends(name, ".splat"))
-		return splat_read_map(s, offset, report, name, &map, e);
 	if (!is_ply && (sog_is(&map) || path_ends(name, ".sog")))
 		return sog_read_map(s, offset, report, name, &map, e);
 	if (!is_ply && (glb_is(&map) || path_ends(name, ".glb")))
 		return glb_read_map(s, offset, report, name, &map, e);
+	if (!is_ply && (spz_is(&map) || path_ends(name, ".spz")))
+		return spz_read_map(s, offset, report, name, &map, e);
+	if (!is_ply && path_ends(name, ".splat"))
+		return splat_read_map(s, offset, report, name, &map, e);
 	return ply_read_like(s, offset, report, name, &map, like, e);
 }
 

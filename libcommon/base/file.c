@@ -22,20 +22,48 @@ const char *file_name(const char *path)
 	return is_standard(path) ? "stdin" : path;
 }
 
-/* What is on disk where a file was not fetched: Git's pointer to it, or the page of a server. */
+#define PAGE "a web page, not the file: download it again"
+#define ANSWER "a server's message, not the file: download it again"
+
+/* What is on disk where a file was not fetched or not unpacked: Git's pointer to it, what a server said in
+ * its place, or an archive. Text is told by how it begins without blanks, in any case, others by bytes at a
+ * place. */
+static const struct {
+	size_t at;
+	const char *bytes, *what;
+} stand_ins[] = {{0, "versionhttps://git-lfs.github.com/spec/",
+			 "a pointer of Git LFS, not the file: 'git lfs pull' fetches it"},
+	{0, "<!doctypehtml", PAGE}, {0, "<html", PAGE}, {0, "<head", PAGE}, {0, "<error>", ANSWER},
+	{0, "{\"error", ANSWER}, {0, "{\"message\":", ANSWER}, {0, "{\"detail\":", ANSWER},
+	{0, "404:notfound", ANSWER}, {0, "entrynotfound", ANSWER},
+	{257, "ustar", "a tar archive, not the file: 'tar -xf' unpacks it"},
+	{0, "7z\xbc\xaf\x27\x1c", "an archive of 7-Zip, not the file: unpack it"},
+	{0, "Rar!\x1a\x07", "an archive of RAR, not the file: unpack it"},
+	{1, "7zXZ", "packed by xz, not the file: 'unxz' unpacks it"},
+	{4, "1AY&SY", "packed by bzip2, not the file: 'bunzip2' unpacks it"},
+	{0, "\x28\xb5\x2f\xfd", "packed by Zstandard, not the file: 'unzstd' unpacks it"}};
+
+enum { STAND_IN = 512 /* bytes that tell */ };
+
 static int refuse_stand_in(const char *path, const void *data, size_t len, struct err *e)
 {
-	static const struct {
-		const char *begin, *what;
-	} kinds[] = {{"version https://git-lfs.github.com/spec/",
-			     "a pointer of Git LFS, not the file: 'git lfs pull' fetches it"},
-		{"<!doctype html", "a web page, not the file: download it again"},
-		{"<html", "a web page, not the file: download it again"}};
+	const char *from = data, *text;
+	char begin[STAND_IN + 1];
+	size_t n = 0;
 
-	for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
-		if (len > strlen(kinds[i].begin) && !path_ends(path, ".html") &&
-			!strncasecmp(data, kinds[i].begin, strlen(kinds[i].begin)))
-			return err_file(e, path, "%s", kinds[i].what);
+	len = len < STAND_IN ? len : STAND_IN;
+	for (size_t i = len >= 3 && !memcmp(from, "\xef\xbb\xbf", 3) ? 3 : 0; i < len; i++)
+		if (!strchr(" \t\r\n", from[i]) || !from[i])
+			begin[n++] = from[i];
+	begin[n] = 0;
+	text = strncmp(begin, "<?xml", 5) ? begin : begin + strcspn(begin, ">");
+	text += *text == '>';
+	for (size_t i = 0; i < sizeof stand_ins / sizeof *stand_ins && !path_ends(path, ".html"); i++) {
+		const char *bytes = stand_ins[i].bytes;
+		const size_t at = stand_ins[i].at, m = strlen(bytes);
+		if ((!at && !strncasecmp(text, bytes, m)) || (len >= at + m && !memcmp(from + at, bytes, m)))
+			return err_file(e, path, "%s", stand_ins[i].what);
+	}
 	return 0;
 }
 
@@ -54,7 +82,7 @@ FILE *file_open(const char *path, struct err *e)
 		err_errno(e, "%s", path);
 		return NULL;
 	}
-	char begin[64];
+	char begin[STAND_IN];
 	struct stat st;
 	if (!fstat(fileno(in), &st) && S_ISREG(st.st_mode)) {
 		const size_t got = fread(begin, 1, sizeof begin, in);

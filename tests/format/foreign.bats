@@ -47,10 +47,29 @@ refused() {
 	done <<-'END'
 		version https://git-lfs.github.com/spec/v1|a pointer of Git LFS, not the file: 'git lfs pull' fetches it
 		<!DOCTYPE html><html lang="en">|a web page, not the file: download it again
+		<?xml version="1.0"?> <Error><Code>AccessDenied</Code></Error>|a server's message, not the file: download it again
+		{"message": "Not Found", "status": "404"}|a server's message, not the file: download it again
+		404: Not Found|a server's message, not the file: download it again
 	END
 	splats_ply s.ply
 	gzip -c s.ply >s.gz
 	no_splats s.gz "not an .spz file: it does not begin with 'NGSP'; gunzip unpacks what else it may be"
+	"$BIN/gs-transform" -o s.sog s.ply
+	sed 's/meta\.json/meta.text/g' s.sog >s.zip
+	for kind in ply splat spz sog; do
+		tar -cf "t.$kind" s.ply
+		no_splats "t.$kind" "a tar archive, not the file: 'tar -xf' unpacks it"
+		bzip2 -c s.ply >"b.$kind"
+		no_splats "b.$kind" "packed by bzip2, not the file: 'bunzip2' unpacks it"
+		cp s.zip "z.$kind"
+		no_splats "z.$kind" "no file 'meta.json' in the zip: unzip it if it is a packed file"
+	done
+	head -c 320 /dev/zero | tr '\0' '\377' >x.splat
+	no_splats x.splat "none of its 10 Gaussians can be used: 10 have a value that is not finite, 0 a zero quaternion"
+	head -c 128 /dev/zero | tr '\0' '?' >>x.splat
+	no_splats x.splat "not a .splat: 10 of 14 Gaussians are not finite"
+	printf '%0320d' 0 >x.splat
+	no_splats x.splat "not a .splat: 0 of 10 Gaussians are not finite, and it begins as text"
 }
 
 @test "splats in other containers: the command that converts them" {

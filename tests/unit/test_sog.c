@@ -126,7 +126,8 @@ static void test_missing(void)
 
 	for (int i = 0; i < 4; i++) {
 		make_zip(0, names[i]);
-		snprintf(expected, sizeof expected, "f: no file '%s' in the zip", names[i]);
+		snprintf(expected, sizeof expected,
+			"f: no file '%s' in the zip: unzip it if it is a packed file", names[i]);
 		CHECK(!file_map(path, &map, &e) && sog_read_map(&b, offset, NULL, "f", &map, &e) &&
 				e.code == ERR_FORMAT && !strcmp(e.message, expected),
 			"%s", e.message);
