@@ -77,8 +77,10 @@ static void note_cameras(
 	const struct cli *cli, const struct cameras *c, const char *path, const struct import_found *found)
 {
 	const struct resemblance *r = &found->resemblance;
-	size_t test = 0;
+	size_t test = 0, first = 0;
 
+	while (first + 1 < c->n && c->views[first].image)
+		first++;
 	for (size_t i = 0; i < c->n; i++)
 		test += c->views[i].split == SPLIT_TEST;
 	cli_note(cli, 1, "%s: %zu views, %zu of them for testing", file_name(path), c->n, test);
@@ -87,7 +89,9 @@ static void note_cameras(
 			"%s: without --images the sizes of the photographs, how EXIF turns them, and whether the scene looks like them are not checked; masks of another shape, and masks that show no one scene, are refused by pseudomask-select, refer-lift and refer-train",
 			file_name(path));
 	if (files.images && found->missing)
-		cli_warn(cli, "%s: no photograph for %zu of %zu views", files.images, found->missing, c->n);
+		cli_warn(cli,
+			"%s: no photograph for %zu of %zu views, such as '%s': give the folder with files of these names",
+			files.images, found->missing, c->n, c->views[first].name);
 	const int is_alike = !r->views || r->typical >= RESEMBLANCE_LEAST;
 	if (found->near < POINT_FRAME_LEAST && is_alike)
 		cli_warn(cli,

@@ -179,7 +179,7 @@ static int add_weights(
 int check_folder(struct check *c, const char *path, struct err *e)
 {
 	static const char *const parts[] = {"splats.safetensors", "cameras.json"};
-	SCOPED struct dirent **names = NULL;
+	struct dirent **names = NULL;
 	long long views = 0;
 	int found = 0;
 
@@ -199,8 +199,7 @@ int check_folder(struct check *c, const char *path, struct err *e)
 	if (n < 0)
 		return err_errno(e, "%s", path);
 	int bad = add_weights(c, path, names, n, &views, e);
-	for (int i = 0; i < n; i++)
-		free(names[i]);
+	mem_free_strings((char **)names, (size_t)n);
 	if (!bad && !views)
 		return err_set(e, ERR_FORMAT, "%s: not a scene, COLMAP model or folder of weights", path);
 	return bad;

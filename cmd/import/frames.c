@@ -49,13 +49,6 @@ static int is_frame(const struct dirent *d)
 	return path_ends(d->d_name, ".ply");
 }
 
-static void free_names(struct dirent **names, int n)
-{
-	for (int i = 0; i < n; i++)
-		free(names[i]);
-	free(names);
-}
-
 int frames_is_folder(const char *path, struct err *e)
 {
 	static const char *const trained[] = {"meta.json", "point_cloud", "point_cloud.ply"};
@@ -70,7 +63,7 @@ int frames_is_folder(const char *path, struct err *e)
 	}
 	const int n = file_is_dir(path) ? scandir(path, &names, is_frame, alphasort) : 0;
 	if (n > 0)
-		free_names(names, n);
+		mem_free_strings((char **)names, (size_t)n);
 	return n > 1;
 }
 
@@ -120,7 +113,7 @@ int frames_list(const char *folder, char ***paths, size_t *n, struct err *e)
 	*paths = mem_zalloc((size_t)found, sizeof **paths, folder, e);
 	*n = *paths ? (size_t)found : 0;
 	const int bad = !frames || !*paths || take_paths(*paths, frames, names, found, folder, e);
-	free_names(names, found);
+	mem_free_strings((char **)names, (size_t)found);
 	return bad ? -1 : 0;
 }
 

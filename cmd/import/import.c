@@ -21,10 +21,10 @@
 static const char every[] = "every:";
 
 /* The camera file in a folder: the folder itself where it is a COLMAP model, else the first there is of
- * cameras.json, sparse/0, sparse, transforms.json. free() it. NULL with *e (ERR_FORMAT) without. */
+ * cameras.json, sparse/0, sparse, transforms.json, 0. free() it. NULL with *e (ERR_FORMAT) without. */
 static char *find_cameras_in(const char *dir, struct err *e)
 {
-	static const char *const places[] = {"cameras.json", "sparse/0", "sparse", "transforms.json"};
+	static const char *const places[] = {"cameras.json", "sparse/0", "sparse", "transforms.json", "0"};
 
 	if (colmap_is_model(dir))
 		return mem_strdup(dir, e);
@@ -40,6 +40,34 @@ static char *find_cameras_in(const char *dir, struct err *e)
 		"%s: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json",
 		dir);
 	return NULL;
+}
+
+int import_compare_models(const char *cameras, size_t n, const struct report *to, struct err *e)
+{
+	SCOPED char *largest = NULL;
+	size_t most = n;
+
+	for (int k = 0, is_there = 1; is_there; k++) {
+		SCOPED_BY(cameras_free) struct cameras other = {0};
+		struct err ignored;
+		char name[16];
+		snprintf(name, sizeof name, "../%d", k);
+		SCOPED char *path = file_join(cameras, name, "", e);
+		if (!path)
+			return -1;
+		is_there = colmap_is_model(path);
+		if (!is_there || colmap_read(&other, path, &ignored) || other.n <= most)
+			continue;
+		most = other.n;
+		free(largest);
+		largest = path;
+		path = NULL;
+	}
+	if (largest)
+		report_warn(to,
+			"%s: has %zu images, and %s %zu: COLMAP could not join them, and each model has a frame of its own: give the one that the scene was trained with, as a rule the largest: --cameras %s",
+			cameras, n, largest, most, largest);
+	return 0;
 }
 
 static int by_image(const void *a, const void *b)
@@ -278,9 +306,9 @@ static int import_all(struct scene *s, struct rows_report *report, const struct 
 	const struct report *to, struct err *e)
 {
 	/* Cameras first: what is wrong with them, or with a view's name, is said before the slow splats. */
-	if (read_cameras(&s->cameras, o, cameras, e) || import_split(&s->cameras, o->test_views, e) ||
-		open_motion(m, s, o, cameras, e) || read_splats(s, report, o, m, e) ||
-		move(s, o->splats, cameras, &found->near, to, e))
+	if (read_cameras(&s->cameras, o, cameras, e) || import_compare_models(cameras, s->cameras.n, to, e) ||
+		import_split(&s->cameras, o->test_views, e) || open_motion(m, s, o, cameras, e) ||
+		read_splats(s, report, o, m, e) || move(s, o->splats, cameras, &found->near, to, e))
 		return -1;
 	cameras_shift(&s->cameras, s->offset);
 	s->is_metric = o->is_metric;

@@ -68,6 +68,10 @@ struct import_options {
 /* The camera file; free() it. NULL with *e set, ERR_USAGE where none was named or found. */
 char *import_find_cameras(const struct import_options *o, struct err *e);
 
+/* Warns where a COLMAP model beside this one, which has n images, has more: 0 and 1 in sparse. 0, or -1 with
+ * *e. */
+int import_compare_models(const char *cameras, size_t n, const struct report *to, struct err *e);
+
 /* Splits the views: NAME,... or every:N for testing; NULL leaves them as they are. 0, or -1 with *e. */
 int import_split(struct cameras *c, const char *test_views, struct err *e);
 

@@ -7,10 +7,13 @@
 #include "base/utf8.h"
 #include "geom/views.h"
 
+#include <dirent.h>
+#include <strings.h>
+
 /* The path of a file that exists, or NULL. *e is set only when memory is out. */
-static char *try_file(const char *dir, const char *name, const char *suffix, struct err *e)
+static char *try_file(const char *dir, const char *name, struct err *e)
 {
-	char *path = file_join(dir, name, suffix, e);
+	char *path = file_join(dir, name, "", e);
 
 	if (path && file_exists(path) && !file_is_dir(path))
 		return path;
@@ -18,20 +21,46 @@ static char *try_file(const char *dir, const char *name, const char *suffix, str
 	return NULL;
 }
 
+/* The one file of that name in other letters, else the one of that name with another ending: cameras that
+ * were made where case does not count say IMG_1.JPG of IMG_1.jpg. NULL where none or several are, or with *e.
+ */
+static char *find_alike(const char *dir, const char *name, struct err *e)
+{
+	const char *base = view_base(name);
+	const size_t stem = view_stem(base);
+	size_t count[2] = {0};
+	char *found[2] = {0};
+	SCOPED char *path = file_join(dir, name, "", e), *folder = path ? file_dir(path, e) : NULL;
+	DIR *listed = folder ? opendir(folder) : NULL;
+
+	for (struct dirent *d = listed ? readdir(listed) : NULL; d; d = readdir(listed)) {
+		const int other = strcasecmp(d->d_name, base) != 0;
+		if (strncasecmp(d->d_name, base, stem) != 0 || view_stem(d->d_name) != stem ||
+			(other && !d->d_name[stem]))
+			continue;
+		free(found[other]);
+		found[other] = count[other]++ ? NULL : file_join(folder, d->d_name, "", e);
+	}
+	if (listed)
+		closedir(listed);
+	free(found[!count[0] ? 0 : 1]);
+	return found[!count[0]];
+}
+
 /* The folder is the user's, the name another program's: it cannot lead out of the folder. */
 static char *find_image(const char *dir, const char *image, struct err *e)
 {
-	static const char *const suffixes[] = {"", ".jpg", ".JPG", ".jpeg", ".JPEG", ".png", ".PNG"};
-	const size_t tries = image[view_stem(image)] ? 1 : sizeof suffixes / sizeof *suffixes;
-	const int leaves = path_leaves(image);
 	SCOPED char *decomposed = name_decomposed(image, e);
 	char *path = NULL;
 
-	for (size_t i = 0; decomposed && !path && i < 2 * tries; i++) {
-		const char *name = i % 2 ? decomposed : image, *suffix = suffixes[i / 2];
-		path = leaves ? NULL : try_file(dir, name, suffix, e);
-		if (!path)
-			path = try_file(dir, view_base(name), suffix, e);
+	for (int i = 0; decomposed && !path && i < 4; i++) {
+		const char *name = i % 2 ? decomposed : image, *base = view_base(name);
+		char *(*find)(const char *, const char *, struct err *) = i < 2 ? try_file : find_alike;
+		if (i % 2 && !strcmp(decomposed, image))
+			continue;
+		path = path_leaves(image) ? NULL : find(dir, name, e);
+		if (!path && base != name)
+			path = find(dir, base, e);
 	}
 	return path;
 }

@@ -29,6 +29,7 @@ static int read_cameras(struct fitting_input *f, struct err *e)
 
 	f->path = import_find_cameras(&files, e);
 	if (!f->path || camerafile_read(&f->cameras, f->path, e) ||
+		import_compare_models(f->path, f->cameras.n, f->to, e) ||
 		import_split(&f->cameras, o->test_views, e))
 		return -1;
 	cameras_undistort(&f->cameras);

@@ -3,7 +3,6 @@
 #include "base/file.h"
 #include "base/little.h"
 #include "base/mem.h"
-#include "base/textfile.h"
 #include "geom/lens.h"
 #include "geom/views.h"
 
@@ -241,7 +240,7 @@ int colmap_read(struct cameras *c, const char *dir, struct err *e)
 	return bad ? -1 : 0;
 }
 
-static int add_point(struct colmap_points *p, size_t *room, const double place[3], const double color[3],
+int colmap_add_point(struct colmap_points *p, size_t *room, const double place[3], const double color[3],
 	const char *path, struct err *e)
 {
 	size_t places = *room, colors = *room;
@@ -268,62 +267,24 @@ enum { ENTRY = 8 + 24 + 3 + 8 + 8 };
 
 static int read_points_binary(struct colmap_points *p, const char *path, struct err *e)
 {
-	SCOPED_BY(file_unmap) struct file_map map = {0};
-	size_t room = 0, at = 8;
-	int bad = 0;
+	struct cursor in = {0};
+	size_t room = 0;
+	uint64_t n = 0;
+	int bad = open_binary(&in, path, ENTRY, &n, e);
 
-	if (file_map(path, &map, e))
-		return -1;
-	const uint64_t n = map.len < 8 ? 0 : little_get(map.data, 8);
 	for (uint64_t i = 0; i < n && !bad; i++) {
 		double place[3], color[3];
-		uint64_t views = 0;
-		const unsigned char *entry = map.data + at;
-		if (map.len - at >= ENTRY)
-			views = little_get(entry + ENTRY - 8, 8);
-		if (map.len - at < ENTRY || views > (map.len - at - ENTRY) / 8) {
-			bad = err_file(e, path, "the file ends at offset %zu, within point %llu of %llu",
-				map.len, (unsigned long long)i, (unsigned long long)n);
-			break;
-		}
-		for (size_t k = 0; k < 3; k++) {
+		const unsigned char *entry = take(&in, ENTRY, "point", i, e);
+		const uint64_t views = entry ? little_get(entry + ENTRY - 8, 8) : 0;
+		for (size_t k = 0; k < 3 && entry; k++) {
 			place[k] = little_get_f64(entry + 8 + 8 * k);
 			color[k] = entry[32 + k];
 		}
-		bad = add_point(p, &room, place, color, path, e);
-		at += ENTRY + 8 * (size_t)views;
+		bad = !entry ||
+		      !take(&in, views > SIZE_MAX / 8 ? SIZE_MAX : 8 * (size_t)views, "point", i, e) ||
+		      colmap_add_point(p, &room, place, color, path, e);
 	}
-	if (!bad && map.len < 8)
-		bad = err_file(e, path, "%zu bytes, too short for a COLMAP file", map.len);
-	return bad;
-}
-
-/* Lines of POINT3D_ID X Y Z R G B ERROR and more. */
-static int read_points_text(struct colmap_points *p, const char *path, struct err *e)
-{
-	SCOPED char *text = NULL;
-	size_t length, room = 0;
-	long number = 0;
-	int bad = textfile_read(path, &text, &length, e);
-
-	for (char *line = text; !bad && *line; number++) {
-		char *end = line + strcspn(line, "\n"), *next = end + (*end != 0);
-		double v[7];
-		*end = 0;
-		line += strspn(line, " \t\r");
-		int fields = 0;
-		for (char *after = line; *line && *line != '#' && fields < 7; fields++) {
-			v[fields] = strtod(line, &after);
-			if (after == line)
-				break;
-			line = after;
-		}
-		if (fields == 7)
-			bad = add_point(p, &room, v + 1, v + 4, path, e);
-		else if (*line && *line != '#')
-			bad = err_set(e, ERR_FORMAT, "%s:%ld: not 'ID X Y Z R G B ERROR'", path, number + 1);
-		line = next;
-	}
+	file_unmap(&in.map);
 	return bad;
 }
 
@@ -337,7 +298,7 @@ int colmap_points_read(struct colmap_points *p, const char *dir, struct err *e)
 		SCOPED char *path = file_join(dir, "points3D", suffixes[i], e);
 		bad = path ? 0 : -1;
 		if (path && file_exists(path))
-			bad = i ? read_points_text(p, path, e) : read_points_binary(p, path, e);
+			bad = i ? colmap_read_points_text(p, path, e) : read_points_binary(p, path, e);
 	}
 	if (bad)
 		colmap_points_free(p);

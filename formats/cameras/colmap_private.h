@@ -33,3 +33,7 @@ int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_ent
 /* cameras.txt and images.txt. */
 int colmap_read_text(struct cameras *c, struct colmap_entries *all, const char *cameras, const char *images,
 	struct err *e);
+
+int colmap_add_point(struct colmap_points *p, size_t *room, const double place[3], const double color[3],
+	const char *path, struct err *e);
+int colmap_read_points_text(struct colmap_points *p, const char *path, struct err *e);

@@ -218,6 +218,25 @@ int colmap_read_text(
 	return bad;
 }
 
+int colmap_read_points_text(struct colmap_points *p, const char *path, struct err *e)
+{
+	struct lines in;
+	size_t room = 0;
+	char *line;
+	int bad = open_text(&in, path, e);
+
+	while (!bad && (line = next_entry(&in))) {
+		double v[7];
+		int n = 0;
+		while (n < 7 && !next_number(&line, &v[n]))
+			n++;
+		bad = n < 7 ? err_set(e, ERR_FORMAT, "%s:%ld: not 'ID X Y Z R G B ERROR'", path, in.number)
+			    : colmap_add_point(p, &room, v + 1, v + 4, path, e);
+	}
+	free(in.text);
+	return bad;
+}
+
 /* The first view with the intrinsics of view i: its number, from 1, is the camera's id. */
 static size_t camera_of(const struct cameras *c, size_t i)
 {

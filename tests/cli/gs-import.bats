@@ -169,7 +169,7 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 	: >photos/deep/b.jpg
 	sed -i 's, b.jpg, deep/b.jpg,' model/images.txt
 	"$BIN/gs-import" --cameras model --images photos -o scene s.ply 2>err
-	grep -qx "gs-import: warning: photos: no photograph for 1 of 3 views" err
+	grep -qx "gs-import: warning: photos: no photograph for 1 of 3 views, such as 'c': give the folder with files of these names" err
 	[ "$(imported image | tr -d '\n')" = '["../photos/a.jpg"]["../photos/deep/b.jpg"][null]' ]
 	"$BIN/gs-import" -q --cameras model --images "$PWD/photos/deep" -o out/scene s.ply 2>err
 	[ ! -s err ]
@@ -190,6 +190,31 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 	grep -q "photos: the photographs of 1 of 1 views have another shape than their cameras ('b' is 4x1): give those that the cameras are of" err
 	says 4 "gs-import: none: No such file or directory" "$BIN/gs-import" --cameras c.json --images none -o scene s.ply
 	says 4 "gs-import: s.ply: Not a directory" "$BIN/gs-import" --cameras c.json --images s.ply -o scene s.ply
+}
+
+@test "photographs in other letters or of another ending, where one file is meant" {
+	mkdir -p photos/deep
+	: >photos/A.JPEG && : >photos/deep/B.Jpg && : >photos/deep/b.png
+	sed -i 's, b.jpg, deep/b.jpg,' model/images.txt
+	"$BIN/gs-import" -q --cameras model --images photos -o scene s.ply
+	[ "$(imported image | tr -d '\n')" = '["../photos/A.JPEG"]["../photos/deep/B.Jpg"][null]' ]
+	: >photos/a.png && : >photos/deep/b.JPG
+	"$BIN/gs-import" -q --cameras model --images photos -o scene s.ply
+	[ "$(imported image | tr -d '\n')" = '[null][null][null]' ]
+}
+
+@test "several models of COLMAP: a larger one is named" {
+	mkdir -p kitchen/sparse
+	for k in 0 1 2; do cp -r model kitchen/sparse/$k; done
+	sed -i '/ b.jpg$/,+1d; / c.jpg$/d' kitchen/sparse/0/images.txt
+	sed -i '/ c.jpg$/d' kitchen/sparse/1/images.txt
+	for cameras in kitchen kitchen/sparse kitchen/sparse/0; do
+		"$BIN/gs-import" --cameras $cameras -o scene s.ply 2>err
+		grep -qx "gs-import: warning: kitchen/sparse/0: has 1 images, and kitchen/sparse/0/../2 3: COLMAP could not join them, and each model has a frame of its own: give the one that the scene was trained with, as a rule the largest: --cameras kitchen/sparse/0/../2" err
+		[ "$(imported name | tr -d '\n')" = '["a"]' ]
+	done
+	"$BIN/gs-import" --cameras kitchen/sparse/2 -o scene s.ply 2>err
+	not grep -q warning err
 }
 
 @test "a photograph's path does not lead out of --images" {
@@ -264,7 +289,7 @@ $unchecked" "$BIN/gs-import" --cameras model -o scene s.ply
 	mkdir photos && : >"photos/$name" && : >photos/a.jpg
 	printf '1 1 0 0 0 0 0 2 1 %s\n\n2 1 0 0 0 0 0 2 1 a.jpg\n' "$name" >model/images.txt
 	"$BIN/gs-import" --cameras model --images photos -o scene s.ply 2>err
-	grep -qx "gs-import: warning: photos: no photograph for 1 of 2 views" err
+	grep -q "gs-import: warning: photos: no photograph for 1 of 2 views, such as " err
 	[ "$(imported image | tr -d '\n')" = '["../photos/a.jpg"][null]' ]
 	iconv -f utf-8 -t utf-8 scene/cameras.json >/dev/null
 }

@@ -74,7 +74,10 @@ refuses() {
 	cmp out.ply binary.ply
 	head -c 100 sparse/0/points3D.bin >cut && mv cut sparse/0/points3D.bin
 	rm out.ply
-	refuses "sparse/0/points3D.bin: the file ends at offset 100, within point 1 of 3"
+	refuses "sparse/0/points3D.bin: 3 entries at offset 0 do not fit a file of 100 bytes"
+	{ printf '\1' && tail -c +2 sparse/0/points3D.bin | head -c 50 && printf '\377'; } >cut
+	head -c 100 /dev/zero >>cut && mv cut sparse/0/points3D.bin
+	refuses "sparse/0/points3D.bin: the file ends at offset 152, within point 0"
 	rm sparse/0/points3D.bin
 	echo "$points" | sed '2s/200/red/' >sparse/0/points3D.txt
 	refuses "sparse/0/points3D.txt:2: not 'ID X Y Z R G B ERROR'"
