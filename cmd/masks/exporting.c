@@ -232,20 +232,17 @@ int exporting_put_coco(const struct exporting *x, FILE *out, struct err *e)
 static int check_files(const struct exporting *x, struct err *e)
 {
 	const size_t n = x->masks.n;
-	SCOPED char **files = mem_zalloc(n, sizeof *files, x->path, e);
-	SCOPED_BY(names_free) struct names names = {0};
-	size_t earlier;
+	char **files = mem_zalloc(n, sizeof *files, x->path, e);
+	size_t twice = NAMES_NONE, earlier;
 	int bad = !files;
 
 	for (size_t i = 0; i < n && !bad; i++)
 		bad = !(files[i] = file_join(x->masks.items[i].view, "\n", png_name(&x->masks.items[i]), e));
-	bad = bad || names_make(&names, files, sizeof *files, 0, n, e);
-	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
-	if (twice != NAMES_NONE)
+	bad = bad || names_find_twice(files, sizeof *files, 0, n, &twice, &earlier, e);
+	if (!bad && twice != NAMES_NONE)
 		bad = err_set(e, ERR_FORMAT, "%s: view '%s' has two masks of '%s', which would be one PNG",
 			x->path, x->masks.items[twice].view, png_name(&x->masks.items[twice]));
-	for (size_t i = 0; files && i < n; i++)
-		free(files[i]);
+	mem_free_strings(files, n);
 	return bad;
 }
 

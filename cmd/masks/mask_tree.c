@@ -68,13 +68,6 @@ static int list(const char *folder, struct dirent ***names, struct err *e)
 	return n < 0 ? err_errno(e, "%s", folder) : n;
 }
 
-static void free_list(struct dirent **names, int n)
-{
-	for (int i = 0; i < n; i++)
-		free(names[i]);
-	free(names);
-}
-
 static int walk_view(struct walk *w, const char *folder, const char *view, struct err *e)
 {
 	struct dirent **names;
@@ -83,7 +76,7 @@ static int walk_view(struct walk *w, const char *folder, const char *view, struc
 
 	for (int i = 0; i < n && !bad; i++)
 		bad = walk_picture(w, folder, view, names[i]->d_name, e);
-	free_list(names, n);
+	mem_free_strings((char **)names, n < 0 ? 0 : (size_t)n);
 	return bad ? -1 : 0;
 }
 
@@ -111,7 +104,7 @@ static int walk_views(struct walk *w, struct err *e)
 		bad = bad || walk_view(w, paths[i], views[i], e);
 		mem_free_all(paths[i], views[i]);
 	}
-	free_list(names, n);
+	mem_free_strings((char **)names, n < 0 ? 0 : (size_t)n);
 	return bad ? -1 : 0;
 }
 

@@ -60,9 +60,7 @@ static int add_name(struct painting_names *names, const struct jsonl *j, struct 
 
 	if (!name)
 		return jsonl_err(j, e, "does not begin with #rrggbb or 0 to 65535, and a blank");
-	name += strspn(name, " \t");
-	for (size_t n = strlen(name); n && strchr(" \t", name[n - 1]); n--)
-		name[n - 1] = 0;
+	name = name_trim(name);
 	const char *reason = name_fault(name, NAME_DATA, fault);
 	if (reason)
 		return jsonl_err(j, e, "the name %s", reason);
@@ -142,32 +140,76 @@ static int put_name(
 	return painting_put(&mask, w, p->path, out, e);
 }
 
-/* Colours that cover much and have no name: a slip of the painter or of the file of names. */
-static int warn_unnamed(const struct picture_read *p, const struct painting_names *names,
-	const struct report *to, struct err *e)
+/* Colours that differ by at most this in each channel are near; a map of labels has at most so many colours.
+ */
+enum { NEAR = 24, HALF = 128, LABELS_MOST = 64 };
+
+/* A picture that was saved with loss is of nothing but such colours, to this share, as a photograph is not.
+ */
+static const double lossy_share = 0.8;
+
+/* The nearest colour that has a name, black or white, where one is near enough; else none. */
+static uint32_t nearest(const struct painting_names *names, uint32_t colour, int limit)
+{
+	uint32_t found = PNG_PAINT_NONE;
+
+	for (size_t i = 0; i < names->n + 2 && colour < PNG_PAINT_NUMBER; i++) {
+		const uint32_t other = i < names->n ? names->items[i].colour : i == names->n ? 0 : 0xffffff;
+		int most = 0;
+		for (int k = 0; k < 24; k += 8) {
+			const int d = abs((int)(other >> k & 255) - (int)(colour >> k & 255));
+			most = d > most ? d : most;
+		}
+		if (most < limit && other < PNG_PAINT_NUMBER) {
+			found = other;
+			limit = most;
+		}
+	}
+	return found;
+}
+
+/* Makes each pixel of a picture that was saved with loss one of the nearest colour. Else what covers much and
+ * has no name is a slip of the painter or of the file of names. */
+static int check_colours(
+	struct picture_read *p, const struct painting_names *names, const struct report *to, struct err *e)
 {
 	const size_t pixels = (size_t)p->height * (size_t)p->width;
 	SCOPED uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
+	SCOPED size_t *ends = mem_alloc(pixels, sizeof *ends, p->path, e);
+	size_t covered = 0, moved = 0, colours = 0;
+	int is_grey = 1; /* black and white alone have names */
 
-	if (!sorted)
+	if (!sorted || !ends)
 		return -1;
-	for (size_t at = 0; at < pixels; at++)
-		sorted[at] = p->paint[at];
+	memcpy(sorted, p->paint, pixels * sizeof *sorted);
 	qsort(sorted, pixels, sizeof *sorted, compare_u32);
-	for (size_t first = 0, end; first < pixels; first = end) {
+	for (size_t i = 0; i < names->n; i++)
+		is_grey = is_grey && (!names->items[i].colour || names->items[i].colour == 0xffffff);
+	for (size_t first = 0, end; first < pixels; first = ends[colours++] = end) {
 		for (end = first; end < pixels && sorted[end] == sorted[first];)
 			end++;
-		const double share = (double)(end - first) / (double)pixels;
-		const uint32_t colour = sorted[first];
-		if (share <= unnamed_share || !colour || colour == 0xffffff || colour == PNG_PAINT_NONE ||
-			painting_names_find(names, colour))
-			continue;
-		if (colour & PNG_PAINT_NUMBER)
-			report_warn(to, "%s: %u, %.1f%% of it, has no name", p->path,
-				(unsigned)(colour ^ PNG_PAINT_NUMBER), 100 * share);
-		else
-			report_warn(to, "%s: #%06x, %.1f%% of it, has no name", p->path, (unsigned)colour,
-				100 * share);
+		const uint32_t near = nearest(names, sorted[first], NEAR + 1);
+		covered += near != PNG_PAINT_NONE ? end - first : 0;
+		moved += near != PNG_PAINT_NONE && near != sorted[first] ? end - first : 0;
+	}
+	if ((is_grey || colours > LABELS_MOST) && (double)covered >= lossy_share * (double)pixels &&
+		(double)moved > unnamed_share * (double)pixels) {
+		for (size_t i = 0; i < pixels; i++)
+			p->paint[i] = nearest(names, p->paint[i], is_grey ? HALF + 1 : NEAR + 1);
+		report_warn(to,
+			"%s: %zu colours near those that have names, as of a JPEG or a soft brush: each pixel is taken for the nearest; save paintings without loss",
+			p->path, colours);
+		return 0;
+	}
+	for (size_t i = 0; i < colours; i++) {
+		const double share = (double)(ends[i] - (i ? ends[i - 1] : 0)) / (double)pixels;
+		const uint32_t colour = sorted[ends[i] - 1];
+		if (share > unnamed_share && colour && colour != 0xffffff && colour != PNG_PAINT_NONE &&
+			!painting_names_find(names, colour))
+			report_warn(to,
+				colour & PNG_PAINT_NUMBER ? "%s: %u, %.1f%% of it, has no name"
+							  : "%s: #%06x, %.1f%% of it, has no name",
+				p->path, (unsigned)(colour & (PNG_PAINT_NUMBER - 1)), 100 * share);
 	}
 	return 0;
 }
@@ -178,7 +220,7 @@ int painting_put_colours(struct painting_names *names, const char *path, struct 
 	struct picture_read p = {.path = path};
 	int bad = png_read_paint(path, &p.paint, &p.height, &p.width, e) || !(p.view = view_of(path, e)) ||
 		  !(p.mask = mem_alloc((size_t)p.height, (size_t)p.width, path, e)) ||
-		  warn_unnamed(&p, names, to, e);
+		  check_colours(&p, names, to, e);
 
 	for (size_t i = 0; i < names->n && !bad; i++)
 		bad = put_name(&p, &names->items[i], w, out, e);
@@ -195,19 +237,16 @@ int painting_two_pictures(const char *earlier, const char *later, const char *vi
 
 int painting_check_shared(const char *const *pictures, size_t count, struct err *e)
 {
-	SCOPED char **views = mem_zalloc(count, sizeof *views, "views", e);
-	SCOPED_BY(names_free) struct names names = {0};
-	size_t earlier;
+	char **views = mem_zalloc(count, sizeof *views, "views", e);
+	size_t twice = NAMES_NONE, earlier;
 	int bad = !views;
 
 	for (size_t i = 0; i < count && !bad; i++)
 		if (painting_needs_names(pictures[i]))
 			bad = !(views[i] = view_of(pictures[i], e));
-	bad = bad || names_make(&names, views, sizeof *views, 0, count, e);
-	const size_t twice = bad ? NAMES_NONE : names_twice(&names, &earlier);
-	if (twice != NAMES_NONE)
+	bad = bad || names_find_twice(views, sizeof *views, 0, count, &twice, &earlier, e);
+	if (!bad && twice != NAMES_NONE)
 		bad = painting_two_pictures(pictures[earlier], pictures[twice], views[twice], e);
-	for (size_t i = 0; views && i < count; i++)
-		free(views[i]);
+	mem_free_strings(views, count);
 	return bad ? -1 : 0;
 }

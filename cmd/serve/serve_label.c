@@ -321,6 +321,7 @@ static int take_name(const cJSON *body, const char *key, const char **name, stru
 
 	if (got <= 0)
 		return got;
+	*name = name_trim(json_member(body, key)->valuestring);
 	if (name_fault(*name, NAME_DATA, fault))
 		return serving_faulty(e, key, name_fault(*name, NAME_DATA, fault));
 	return strlen(*name) > NAME_BYTES ? serving_faulty(e, key, "is longer than 200 bytes") : 0;

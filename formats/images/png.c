@@ -173,11 +173,12 @@ static int is_clear(const struct png_job *job, size_t pixel, unsigned least)
 	return least && sample(job, pixel, job->channels - 1) < least;
 }
 
-/* Opens, reads with the job's settings, and makes room for a value of so many bytes for each pixel: NULL with
- * *e, then too release() it. */
-static void *read_pixels(struct png_job *job, const char *path, size_t bytes)
+/* Opens where no stream is given, reads with the job's settings, and makes room for a value of so many bytes
+ * for each pixel: NULL with *e, then too release() it. */
+static void *read_pixels(struct png_job *job, const char *path, FILE *given, size_t bytes)
 {
-	SCOPED_BY(file_release) FILE *in = file_open(path, job->e);
+	SCOPED_BY(file_release) FILE *own = given ? NULL : file_open(path, job->e);
+	FILE *in = given ? given : own;
 
 	job->path = file_name(path);
 	if (!in)
@@ -192,23 +193,28 @@ static void *read_pixels(struct png_job *job, const char *path, size_t bytes)
 	return NULL;
 }
 
-/* What is of a mask is at least so bright: 1, or half where greys, near black and near white and few between,
- * show that it was a JPEG or scaled. */
+/* What is of a mask is at least so bright: 1, or half where values, near black and near white and few
+ * between, show that it was a JPEG or scaled. */
 static unsigned least_bright(const struct png_job *job)
 {
+	const int colours = job->channels < 3 ? 1 : 3;
 	size_t counts[4] = {0};
 
-	for (size_t i = 0, n = job->channels < 3 ? pixels_of(job) : 0; i < n; i++) {
-		const unsigned value = sample(job, i, 0) >> (job->depth - 8);
+	for (size_t i = 0, n = pixels_of(job); i < n; i++) {
+		unsigned value = 0;
+		for (int k = 0; k < colours; k++) {
+			const unsigned next = sample(job, i, k) >> (job->depth - 8);
+			value = next > value ? next : value;
+		}
 		counts[value / 64] += value && value < 255;
 	}
 	return counts[0] && counts[3] && counts[1] + counts[2] < counts[3] ? 128u << (job->depth - 8) : 1;
 }
 
-int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e)
+int png_take_mask(const char *path, FILE *in, uint8_t **pixels, int *height, int *width, struct err *e)
 {
 	struct png_job job = {.e = e};
-	uint8_t *mask = read_pixels(&job, path, 1);
+	uint8_t *mask = read_pixels(&job, path, in, 1);
 	size_t marked = 0, cleared = 0;
 
 	if (mask) {
@@ -233,10 +239,15 @@ int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, s
 	return mask ? 0 : -1;
 }
 
+int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e)
+{
+	return png_take_mask(path, NULL, pixels, height, width, e);
+}
+
 int png_read_labels(const char *path, int32_t **labels, int *height, int *width, struct err *e)
 {
 	struct png_job job = {.e = e, .is_labels = 1};
-	int32_t *out = read_pixels(&job, path, sizeof *out);
+	int32_t *out = read_pixels(&job, path, NULL, sizeof *out);
 
 	if (out) {
 		const unsigned least = least_alpha(&job);
@@ -267,7 +278,7 @@ static int is_doubled(const struct png_job *job, size_t pixel, int colours)
 int png_read_paint(const char *path, uint32_t **paint, int *height, int *width, struct err *e)
 {
 	struct png_job job = {.e = e};
-	uint32_t *out = read_pixels(&job, path, sizeof *out);
+	uint32_t *out = read_pixels(&job, path, NULL, sizeof *out);
 
 	if (out) {
 		const int is_wide = job.depth == 16, colours = job.channels < 3 ? 1 : 3;

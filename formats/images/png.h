@@ -22,6 +22,9 @@ int picture_check_bytes(const char *path, const char *kind, size_t width, size_t
  * transparent. free() it. */
 int png_read_mask(const char *path, uint8_t **pixels, int *height, int *width, struct err *e);
 
+/* The same of a stream; `path` is for messages. */
+int png_take_mask(const char *path, FILE *in, uint8_t **pixels, int *height, int *width, struct err *e);
+
 /* A PNG of numbers: grey levels of up to 16 bits as they are in the file, or the places in a palette, -1
  * where it is transparent; other colours are an error. labels (height,width); free() it. */
 int png_read_labels(const char *path, int32_t **labels, int *height, int *width, struct err *e);

@@ -26,10 +26,38 @@ void annotations_free(struct annotations *a)
 	*a = (struct annotations){0};
 }
 
+/* LabelMe's mask: a PNG of the box of two points, whose first pixel is at the first. */
+static int read_mask_shape(
+	struct reading *r, const char *base64, const char *view, const char *label, struct err *e)
+{
+	const int left = (int)r->points[0], top = (int)r->points[1], right = (int)r->points[2],
+		  bottom = (int)r->points[3];
+	size_t n = 0;
+	int height, width;
+	SCOPED uint8_t *pixels = NULL;
+	SCOPED_BY(rle_free) struct rle mask = {0};
+	SCOPED void *bytes = base64_bytes(base64, &n, e);
+	SCOPED_BY(file_release) FILE *in = bytes ? fmemopen(bytes, n + !n, "rb") : NULL;
+
+	if (!in || png_take_mask(r->where, in, &pixels, &height, &width, e))
+		return -1;
+	if (left < 0 || top < 0 || left + width > r->width || top + height > r->height ||
+		abs(right - left + 1 - width) > 1 || abs(bottom - top + 1 - height) > 1)
+		return err_file(e, r->where,
+			"its mask is %dx%d, but its points are %d,%d and %d,%d in a picture of %dx%d (width x height)",
+			width, height, left, top, right, bottom, r->width, r->height);
+	memset(r->mask, 0, (size_t)r->height * (size_t)r->width);
+	for (int y = 0; y < height; y++)
+		memcpy(r->mask + (size_t)(top + y) * (size_t)r->width + left,
+			pixels + (size_t)y * (size_t)width, (size_t)width);
+	struct annotation *on = reading_find(r, view, label, e);
+	return -(!on || rle_encode(&mask, r->mask, r->height, r->width, e) || reading_unite(r, on, &mask, e));
+}
+
 static int read_shape(struct reading *r, const cJSON *shape, const char *view, struct err *e)
 {
 	const cJSON *points = json_get(shape, "points");
-	const char *label, *type = "polygon";
+	const char *label, *type = "polygon", *mask = NULL;
 	size_t count;
 
 	if (json_string(shape, "label", 1, &label, r->where, e) < 0 ||
@@ -37,8 +65,9 @@ static int read_shape(struct reading *r, const cJSON *shape, const char *view, s
 		reading_points(r, points, &count, e))
 		return -1;
 	if (!strcmp(type, "mask"))
-		return err_file(
-			e, r->where, "a shape of type 'mask'; polygons, rectangles and circles are read");
+		return json_string(shape, "mask", 1, &mask, r->where, e) < 0 ? -1
+		       : count != 2 ? err_file(e, r->where, "a mask without the two points of its box")
+				    : read_mask_shape(r, mask, view, label, e);
 	return reading_draw_shape(r, type, count, view, label, e);
 }
 
@@ -192,13 +221,17 @@ static const cJSON *ref_lerf_objects(const cJSON *root)
 static int read_any(struct reading *r, const cJSON *root, const char *path, struct err *e)
 {
 	const cJSON *pictures = ref_lerf_objects(root);
-	const int is_labelme = cJSON_IsArray(json_get(root, "shapes"));
+	const int is_labelme = json_get(root, "shapes") && json_get(root, "imagePath"),
+		  is_coco = json_get(root, "annotations") && json_get(root, "images");
+	const cJSON *list = json_get(root, is_labelme ? "shapes" : "annotations");
 
 	snprintf(r->where, WHERE, "%s", r->path);
 	r->to->is_layered = is_labelme;
-	if (is_labelme)
+	if ((is_labelme || is_coco) && !cJSON_IsArray(list) && !cJSON_IsNull(list))
+		return err_file(e, r->path, "key '%s' is not a list", list->string);
+	if (is_labelme || cJSON_IsArray(json_get(root, "shapes")))
 		return read_labelme(r, root, e);
-	if (cJSON_IsArray(json_get(root, "annotations")))
+	if (is_coco || cJSON_IsArray(list))
 		return reading_annotations(r, root, e);
 	if (pictures)
 		return read_ref_lerf(r, root, pictures, path, e);

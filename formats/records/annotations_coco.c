@@ -4,34 +4,51 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/names.h"
+#include "base/number.h"
 #include "formats/records/masks.h"
 #include "geom/views.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* The item of a list whose "id" is that number; NULL with *e where none is, or two different ones. */
-static const cJSON *with_id(
-	const struct reading *r, const cJSON *list, const cJSON *object, const char *kind, struct err *e)
+/* An id, a number or a text, as text; NULL where it is neither. */
+static const char *id_text(const cJSON *id, char text[NUMBER_SIZE])
 {
-	char key[32];
-	snprintf(key, sizeof key, "%s_id", kind);
-	const cJSON *item, *found = NULL, *id = json_get(object, key);
+	return cJSON_IsNumber(id) ? number_text(text, id->valuedouble) : cJSON_GetStringValue(id);
+}
 
-	cJSON_ArrayForEach(item, list)
+static int is_id(const cJSON *own, const cJSON *wanted, const char *id)
+{
+	char text[NUMBER_SIZE];
+
+	if (cJSON_IsNumber(own) && cJSON_IsNumber(wanted))
+		return own->valuedouble == wanted->valuedouble;
+	const char *other = id ? id_text(own, text) : NULL;
+	return other && !strcmp(other, id);
+}
+
+/* The item of a list whose "id" is that of the object's "KIND_id"; NULL with *e where none is, or two
+ * different ones. */
+static const cJSON *with_id(const struct reading *r, const cJSON *root, const char *list, const cJSON *object,
+	const char *key, struct err *e)
+{
+	char text[NUMBER_SIZE];
+	const cJSON *item, *found = NULL, *items = json_get(root, list), *wanted = json_get(object, key);
+	const char *id = id_text(wanted, text);
+
+	cJSON_ArrayForEach(item, items)
 	{
-		const cJSON *own = json_get(item, "id");
-		if (!cJSON_IsNumber(own) || !cJSON_IsNumber(id) || own->valuedouble != id->valuedouble)
+		if (!is_id(json_get(item, "id"), wanted, id))
 			continue;
 		if (found && !cJSON_Compare(found, item, 1)) {
-			err_file(e, r->where, "two of the file's %s have its '%s', %g",
-				*kind == 'i' ? "images" : "categories", key, id->valuedouble);
+			err_file(e, r->where, "two of the file's %s have its '%s', %.80s", list, key, id);
 			return NULL;
 		}
 		found = found ? found : item;
 	}
 	if (!found)
-		err_file(e, r->where, "no %s has its '%s'", kind, key);
+		err_file(e, r->where, "none of the file's %d %s has its '%s', %.80s: is the file whole?",
+			cJSON_GetArraySize(items), list, key, id ? id : "which is missing");
 	return found;
 }
 
@@ -214,15 +231,14 @@ static int name_views(struct reading *r, const cJSON *images, struct coco *c, st
 static int read_annotation(
 	struct reading *r, const struct coco *c, const cJSON *root, const cJSON *item, struct err *e)
 {
-	const cJSON *images = json_get(root, "images"), *before;
-	const cJSON *image = with_id(r, images, item, "image", e);
-	const cJSON *category = image ? with_id(r, json_get(root, "categories"), item, "category", e) : NULL;
+	const cJSON *before, *image = with_id(r, root, "images", item, "image_id", e);
+	const cJSON *category = image ? with_id(r, root, "categories", item, "category_id", e) : NULL;
 	const char *name;
 	size_t at = 0;
 
 	if (!category)
 		return -1;
-	for (before = images->child; before != image; before = before->next)
+	for (before = json_get(root, "images")->child; before != image; before = before->next)
 		at++;
 	return -(json_string(category, "name", 1, &name, r->where, e) < 0 ||
 		 reading_size(r, image, "height", "width", e) || read_mask(r, item, c->views[at], name, e));

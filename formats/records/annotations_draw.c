@@ -91,11 +91,10 @@ struct annotation *reading_find(struct reading *r, const char *view, const char 
 {
 	struct annotations *a = r->to;
 	char fault[NAME_FAULT];
-	SCOPED char *name = name_copy(label + strspn(label, " "), e);
-	if (!name)
+	SCOPED char *copy = name_copy(label, e);
+	if (!copy)
 		return NULL;
-	for (char *end = name + strlen(name); end > name && end[-1] == ' '; end--)
-		end[-1] = 0;
+	const char *name = name_trim(copy);
 	const char *reason = name_fault(name, NAME_DATA, fault);
 
 	for (size_t i = 0; i < a->n && isnan(r->score); i++)

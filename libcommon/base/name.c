@@ -85,6 +85,17 @@ char *name_decomposed(const char *text, struct err *e)
 	return copy_form(text, utf8proc_NFD, e);
 }
 
+char *name_trim(char *text)
+{
+	static const char blanks[] = " \t\r\n";
+
+	utf8_plain(text);
+	text += strspn(text, blanks);
+	for (size_t n = strlen(text); n && strchr(blanks, text[n - 1]); n--)
+		text[n - 1] = 0;
+	return text;
+}
+
 char *name_to_file(const char *text, struct err *e)
 {
 	return escape(text, "/%", e);

@@ -21,6 +21,9 @@ const char *name_fault(const char *name, enum name_kind kind, char fault[NAME_FA
 char *name_copy(const char *text, struct err *e);
 char *name_decomposed(const char *text, struct err *e);
 
+/* utf8_plain of what a person typed or pasted, in place, without the blanks at its ends. */
+char *name_trim(char *text);
+
 /* Any text as a file name, such that different texts have different names: '/', '%', control characters,
  * bytes that are not UTF-8, and the dots of '.' and '..' are written as '%' and two capital hexadecimal
  * digits for each byte. free() it; NULL with *e set when memory is out. */

@@ -166,6 +166,20 @@ made() {
 	[ "$(cat err)" = "mask-import: warning: b.json: 1 shapes of type 'line' are left out" ]
 }
 
+@test "LabelMe's masks: a PNG of their box" {
+	kind=0800 picture m.png 'ff 00' 'ff ff'
+	mask() { labelme "{\"label\":\"cup\",\"points\":[$1],\"shape_type\":\"mask\",\"mask\":\"$(base64 -w0 m.png)\"}" >m.json; }
+	mask '[3.2,1.7],[4,2]'
+	echo '{"view":"view_1","object":"cup","segmentation":{"size":[4,6],"counts":[13,2,3,1,5]}}' >truth.jsonl
+	made m.json
+	mask '[3,1],[5,3]' # a box that is measured in another way
+	made m.json
+	for points in '[3,1],[6,2]' '[5,1],[6,2]' '[-1,1],[0,2]'; do
+		mask "$points"
+		says_like 3 "mask-import: m.json: shape 0: its mask is 2x2, but its points are " "$BIN/mask-import" -o none m.json
+	done
+}
+
 @test "COCO: polygons, compressed and plain run lengths, of several pictures" {
 	jq -n '{images: [{id: 5, file_name: "a/view_1.png", height: 3, width: 4}, {id: 6, file_name: "view_2.png", height: 3, width: 4}],
 		categories: [{id: 1, name: "red cup"}, {id: 2, name: "kettle"}], annotations: [
@@ -196,6 +210,10 @@ made() {
 		"$BIN/mask-import" -o made.jsonl columns.json
 		[ "$(jq -r .object made.jsonl)" = cup ]
 	done
+	for ids in '.images[0].id = "5"' '.annotations[0].category_id = "1"' '.images[0].id = "a-b" | .annotations[0].image_id = "a-b"'; do
+		jq "$ids" columns.json >text.json
+		"$BIN/mask-import" text.json | cmp - made.jsonl
+	done
 	jq '.images += [{id: 5, file_name: "view_2.png", height: 6, width: 8}]' columns.json >twice.json
 	says 3 "mask-import: twice.json: annotation 0: two of the file's images have its 'image_id', 5" "$BIN/mask-import" -o none twice.json
 	jq '.categories += [{id: 1, name: "pot"}]' columns.json >twice.json
@@ -203,6 +221,29 @@ made() {
 	jq '.images[0].file_name = "a/"' columns.json >none.json
 	says 3 "mask-import: none.json: image 0: key 'file_name' has no name: 'a/'" "$BIN/mask-import" -o none none.json
 	[ ! -e none ]
+}
+
+@test "paintings that were JPEGs: each pixel is of the nearest colour, but a map of labels is as it is" {
+	local rows=() row x y
+	for y in 0 1 2 3 4 5 6 7; do
+		row=
+		for x in 0 1 2 3 4 5 6 7 8 9; do
+			row+=$(if ((x < 4)); then printf 'e6%02x%02x ' $((25 + y)) $((75 + x)); elif ((x > 8)); then printf '8080%02x ' $y; else printf '%02x00%02x ' $y $x; fi)
+		done
+		rows+=("$row")
+	done
+	picture lossy.png "${rows[@]}"
+	printf '%s\n' '#e6194b cup' >names
+	says 0 "mask-import: warning: lossy.png: 80 colours near those that have names, as of a JPEG or a soft brush: each pixel is taken for the nearest; save paintings without loss" \
+		"$BIN/mask-import" --names names -o made.jsonl lossy.png
+	"$BIN/mask-export" made.jsonl | jq -e '.annotations | length == 1 and .[0].bbox == [0, 0, 4, 8] and .[0].area == 32'
+	picture labels.png "${rows[@]:0:6}"
+	"$BIN/mask-import" -q --names names -o made.jsonl labels.png
+	"$BIN/mask-export" made.jsonl | jq -e '.annotations[0].area == 1'
+	kind=0800 picture grey.png '00 03 05 fb' '02 00 fe ff'
+	echo '255 cup' >names
+	"$BIN/mask-import" -q --names names -o made.jsonl grey.png
+	[ "$(jq -c .segmentation made.jsonl)" = '{"size":[2,4],"counts":"53"}' ]
 }
 
 @test "masks that were JPEGs, and black ones on nothing" {
@@ -338,13 +379,18 @@ mask-import: warning: a.json: 2 shapes of type 'linestrip' are left out" ]
 	labelme '{"label":"cup","points":[[1,1],[3],[3,3]]}' >bad.json && bad "shape 0: a point is not two numbers"
 	labelme '{"points":[]}' >bad.json && bad "shape 0: key 'label' is missing"
 	labelme '{"label":"","points":[[1,1],[3,1],[3,3]]}' >bad.json && bad "shape 0: the label is empty"
-	labelme '{"label":"cup","points":[[1,1],[3,1]],"shape_type":"mask"}' >bad.json && bad "shape 0: a shape of type 'mask'; polygons, rectangles and circles are read"
+	labelme '{"label":"cup","points":[[1,1],[3,1]],"shape_type":"mask"}' >bad.json && bad "shape 0: key 'mask' is missing"
+	labelme '{"label":"cup","points":[[1,1]],"shape_type":"mask","mask":""}' >bad.json && bad "shape 0: a mask without the two points of its box"
+	labelme '{"label":"cup","points":[[1,1],[3,1]],"shape_type":"mask","mask":""}' >bad.json && bad "shape 0: PNG: the file ends too early"
 	labelme | sed 's/"imageHeight":4/"imageHeight":0.5/' >bad.json && bad "imageHeight and imageWidth are no size of a picture"
 	labelme | sed 's/"imageHeight":4/"imageHeight":65536/; s/"imageWidth":[0-9]*/"imageWidth":65535/' >bad.json
 	bad "the picture: 65535x65536 pixels, more than 268435456 altogether"
 	labelme | jq 'del(.imageWidth)' >bad.json && bad "key 'imageWidth' is missing"
 	labelme >bad.json && bad "has no label with an area"
-	jq -n '{images: [], categories: [], annotations: [{image_id: 1, category_id: 2}]}' >bad.json && bad "annotation 0: no image has its 'image_id'"
+	jq -n '{images: [], categories: [], annotations: [{image_id: 1, category_id: 2}]}' >bad.json && bad "annotation 0: none of the file's 0 images has its 'image_id', 1: is the file whole?"
+	jq -n '{images: [], annotations: null}' >bad.json && bad "has no label with an area"
+	jq -n '{images: [], annotations: {}}' >bad.json && bad "key 'annotations' is not a list"
+	labelme | jq '.shapes = null' >bad.json && bad "has no label with an area"
 	jq -n '{images: [{id: 1, file_name: "a.png", height: 2, width: 2}], categories: [{id: 2, name: "a"}],
 		annotations: [{image_id: 1, category_id: 2, segmentation: {size: [2, 2], counts: [1, 2]}}]}' >bad.json
 	says_like 3 "mask-import: bad.json: annotation 0: " "$BIN/mask-import" -o none bad.json

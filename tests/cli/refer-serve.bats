@@ -129,7 +129,7 @@ refused() {
 	lines nameless >said <<-END
 		{"do": "ask", "question": "where is the cup?"}
 		{"do": "label", "points": $place}
-		{"do": "label", "points": $place, "name": "cup"}
+		{"do": "label", "points": $place, "name": " cup\u00a0"}
 		{"do": "ask", "question": "where is the cup?"}
 		{"do": "things"}
 		{"do": "label", "name": "cup", "rename": "чашка"}
