@@ -89,7 +89,8 @@ $(BUILD)/obj/formats/encoders/parser_weights.o: formats/encoders/parser_default.
 TABLES := $(BUILD)/tables/lang/closed.inc $(BUILD)/tables/lang/colours.inc $(BUILD)/tables/lang/question_kinds.inc $(BUILD)/tables/lang/things.inc
 $(BUILD)/tables/lang/closed.inc: libcommon/lang/closed.tsv
 	@mkdir -p $(@D)
-	awk -F '\t' '!/^#/ { printf "\t{\"%s\", CLOSED_%s, %s, %s},\n", $$1, toupper($$2), $$3 == "-" ? -1 : "PARSE_" toupper($$3), $$4 }' $< >$@
+	awk -F '\t' '!/^#/ { n = split($$1, word, " "); for (i = 1; i <= n; i++) { split(word[i] "=" $$4, is, "="); \
+		printf "\t{\"%s\", CLOSED_%s, %s, %s},\n", is[1], toupper($$2), $$3 == "-" ? -1 : "PARSE_" toupper($$3), is[2] } }' $< >$@
 $(BUILD)/tables/lang/colours.inc: libcommon/lang/colours.tsv
 	@mkdir -p $(@D)
 	awk -F '\t' '!/^#/ { printf NF == 4 ? "COLOUR(\"%s\", %s, %s, %s)\n" : "ALIKE(\"%s\", \"%s\")\n", $$1, $$2, $$3, $$4 }' $< >$@

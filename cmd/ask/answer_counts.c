@@ -38,6 +38,51 @@ static void add_things(struct asking_answer *to, const struct asking_answer *mor
 	}
 }
 
+/* Sizes of which the larger is less than so much of the smaller are alike. */
+static const double same_size = 1.15;
+
+/* A thing's length, or its likeliest colour. */
+static double measure(struct answer_told *t, size_t thing, char colour[CALLING_TEXT])
+{
+	const struct asking_answer *all = t->answer;
+	struct asking_answer one = *all;
+	const int relation = t->asked.relation;
+
+	one.things = &thing;
+	one.count = 1;
+	t->answer = &one;
+	answer_looks(t, 1, colour, CALLING_TEXT);
+	colour[strcspn(colour, " ")] = 0;
+	t->answer = all;
+	return relation < 0 ? 1
+			    : answering_length(t, thing,
+				      relation == PARSE_TALLER || relation == PARSE_SHORTER ? QUESTION_HEIGHT
+				      : relation == PARSE_WIDER || relation == PARSE_LONGER ? QUESTION_WIDTH
+											    : QUESTION_SIZE);
+}
+
+int answering_same(struct answer_told *t, struct asking_answer *found, struct asking *a,
+	const struct report *to, struct err *e)
+{
+	SCOPED_BY(asking_answer_free) struct asking_answer second = {0};
+	char colour[CALLING_TEXT], other[CALLING_TEXT];
+
+	if (asking_ask(a, t->asked.text[0], 0, found, to, e) ||
+		(*t->asked.text[1] && asking_ask(a, t->asked.text[1], 0, &second, to, e)))
+		return -1;
+	add_things(found, &second);
+	answering_need_boxes(t, found);
+	t->is_yes = found->count > 1;
+	*found->reason = found->count > 1 ? 0 : *found->reason;
+	for (size_t k = 1; k < found->count; k++) {
+		const double x = measure(t, found->things[0], colour),
+			     y = measure(t, found->things[k], other);
+		t->is_yes &= x < same_size * y && y < same_size * x &&
+			     (t->asked.relation >= 0 || !strcmp(colour, other));
+	}
+	return 0;
+}
+
 /* "two to one", "three each" */
 static void say_numbers(struct answer_told *t, size_t first, size_t second)
 {

@@ -2,6 +2,7 @@
 #include "cmd/ask/answering.h"
 
 #include "base/mem.h"
+#include "lang/colours.h"
 
 #include <math.h>
 #include <string.h>
@@ -49,17 +50,19 @@ void answering_say_number(struct answer_told *t, size_t n)
 static int answer_either(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e)
 {
+	SCOPED_BY(asking_answer_free) struct asking_answer first = {0};
 	SCOPED_BY(asking_answer_free) struct asking_answer second = {0};
 	static const char is[] = " that is ";
 
 	if (asking_ask(a, t->asked.text[0], 0, found, to, e) ||
-		asking_ask(a, t->asked.text[1], 0, &second, to, e))
+		asking_ask(a, t->asked.text[1], 0, &first, to, e) ||
+		asking_ask(a, t->asked.text[2], 0, &second, to, e))
 		return -1;
 	if (!found->count)
 		return 0;
 	const size_t thing = found->things[0];
-	const char *said = t->asked.text[second.holds[thing] > found->holds[thing]];
-	const char *word = strstr(said, is);
+	const char *said = t->asked.text[1 + (second.holds[thing] > first.holds[thing])];
+	const char *word = strstr(said + strlen(t->asked.text[0]), is);
 	answering_say(t, "%s", word ? word + strlen(is) : said);
 	return 0;
 }
@@ -144,8 +147,12 @@ static int answer_whether(struct answer_told *t, struct asking_answer *found, st
 	SCOPED_BY(asking_answer_free) struct asking_answer second = {0};
 
 	if (question_is_any(t->asked.text[0])) {
+		static const char one_of[] = "one of ";
+		const char *text = t->asked.text[1];
 		t->asked.kind = QUESTION_THERE;
-		return asking_ask(a, t->asked.text[1], 1, found, to, e);
+		t->asked.least = 0;
+		return asking_ask(a, text + (strncmp(text, one_of, strlen(one_of)) ? 0 : strlen(one_of)), 1,
+			found, to, e);
 	}
 	if (asking_ask(a, t->asked.text[0], 0, found, to, e) ||
 		asking_ask(a, t->asked.text[1], 1, &second, to, e))
@@ -153,16 +160,26 @@ static int answer_whether(struct answer_told *t, struct asking_answer *found, st
 	if (!found->count)
 		return 0;
 	size_t k = 0;
-	while (k < found->count && is_of(&second, found->things[k]) &&
-		!is_at_nothing(&second, found->things[k]))
+	/* a second colour of a thing is hardly looked for: "the yellow box that is black" */
+	const char *last = strrchr(t->asked.text[1], ' ');
+	const int colour =
+		last && !strcmp(t->asked.text[1] + strlen(t->asked.text[0]) + strlen(" that is"), last)
+			? colour_word(last + 1)
+			: -1;
+	while (k < found->count &&
+		(colour >= 0 ? answer_is_coloured(t, found->things[k], colour)
+			     : is_of(&second, found->things[k]) && !is_at_nothing(&second, found->things[k])))
 		k++;
-	t->is_yes = k == found->count;
+	size_t more = 0;
+	for (size_t i = 0; i < second.count; i++)
+		more += is_of(&second, second.things[i]);
+	t->is_yes = k == found->count && (!t->asked.least || more <= k);
 	*found->reason = 0;
 	if (!t->is_yes && second.is_anchor_unknown)
 		snprintf(found->reason, sizeof found->reason, "%s", unknown_place);
 	else if (!t->is_yes && found->count == 1 && !second.count)
 		memcpy(found->reason, second.reason, sizeof found->reason);
-	else if (!t->is_yes && (found->count > 1 || second.count))
+	else if (!t->is_yes && (found->count > 1 || (second.count && second.things[0] != found->things[0])))
 		snprintf(found->reason, sizeof found->reason,
 			found->count > 1 ? "not %.200s" : "that is %.200s",
 			a->model.lifted.names[found->count > 1 ? found->things[k] : second.things[0]]);
@@ -197,7 +214,7 @@ static int answer_set(struct answer_told *t, struct asking_answer *found, struct
 	if (asking_ask(a, t->asked.text[0], 0, found, to, e))
 		return -1;
 	drop_at_nothing(t, found);
-	if (found->count != 1 || found->is_anchor_unknown ||
+	if (found->count != 1 || found->is_anchor_unknown || t->asked.most ||
 		found->probability[found->things[0]] >= (is_side ? sure : sure_alone))
 		return 0;
 	return answer_all(t->asked.text[0], found, a, to, e);
@@ -240,6 +257,8 @@ static int find_things(struct answer_told *t, struct asking_answer *found, struc
 	case QUESTION_MAJORITY:
 	case QUESTION_SURPLUS:
 		return answering_counts(t, found, a, to, e);
+	case QUESTION_SAME:
+		return answering_same(t, found, a, to, e);
 	default:
 		return answer_one(t, found, a, to, e);
 	}
@@ -303,6 +322,12 @@ static void take_motion(struct answer_told *t, struct asking_answer *found)
 		answering_say(t, "from %.4g to %.4g", found->when[0], found->when[1]);
 }
 
+/* Whether as many are there as is asked. */
+static int is_there(const struct question_asked *q, int n)
+{
+	return (n >= q->least && (n > 0 || q->most) && (!q->most || n <= q->most)) != q->is_denied;
+}
+
 int kinds_answer(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e)
 {
@@ -320,7 +345,9 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 		keep_holding(found, 0);
 		drop_at_nothing(t, found);
 	}
-	t->is_yes |= t->asked.kind == QUESTION_THERE && found->count && (int)found->count >= t->asked.least;
+	if (t->asked.kind == QUESTION_THERE)
+		t->is_yes = is_there(&t->asked, (int)found->count);
+	*found->reason = t->asked.most && found->count ? 0 : *found->reason;
 	take_motion(t, found);
 	if (kind == QUESTION_NUMBER || kind == QUESTION_LIST)
 		t->number = (long)(t->asked.least ? answering_count_kinds(t) : found->count);

@@ -10,6 +10,8 @@
 static const double second_colour = 0.4;
 /* Words for one colour (lang/colours.h). */
 static const double same_colour = 0.3;
+/* A colour that may as well be called by another word: "is it grey?" of a slate one. */
+static const double much_alike = 0.75;
 
 static const char *const basic_colours[] = {
 	"black", "white", "grey", "red", "orange", "yellow", "green", "blue", "purple", "pink", "brown"};
@@ -59,6 +61,18 @@ static void say_colours(const struct answer_told *t, size_t thing, struct parse_
 		for (int c = 0; c < COLOUR_WORDS; c++)
 			worth[c] *= c != best && colour_words_alike(best, c) < same_colour;
 	}
+}
+
+int answer_is_coloured(const struct answer_told *t, size_t thing, int colour)
+{
+	char own[CALLING_TEXT] = "";
+	struct parse_words words = {own, 0, sizeof own};
+	int is = 0;
+
+	say_colours(t, thing, &words);
+	for (int c = 0; c < COLOUR_WORDS; c++)
+		is |= strstr(own, colour_name(c)) && colour_words_alike(c, colour) > much_alike;
+	return is;
 }
 
 /* What else sentences say of a thing. */

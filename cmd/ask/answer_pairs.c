@@ -190,6 +190,19 @@ static int answer_compared(struct answer_told *t, struct asking_answer *found, s
 		return 0;
 	}
 	compare(t, found, anchor.count ? anchor.things[0] : ASKING_NONE);
+	/* "which are taller, the mugs or the jugs?": all of these */
+	const char *won = t->asked.text[!t->is_yes];
+	if (t->asked.kind != QUESTION_COMPARE || !*won || anchor.count)
+		return 0;
+	SCOPED_BY(asking_answer_free) struct asking_answer all = {0};
+	if (asking_ask(a, won, 0, &all, to, e))
+		return -1;
+	if (all.count > 1) {
+		memcpy(found->things, all.things, all.count * sizeof *all.things);
+		for (size_t k = 0; k < all.count; k++)
+			found->probability[all.things[k]] = all.probability[all.things[k]];
+		found->count = all.count;
+	}
 	return 0;
 }
 

@@ -8,13 +8,25 @@ static const struct box *box_of(const struct answer_told *t, size_t object)
 	return &t->asking->model.extents[object].turned;
 }
 
-/* The length that a kind of question is about: the height of a box, its longer side, or their mean. */
+/* How high a thing is above what the lowest stands on: its foot, or the top of what stands there. */
+static double above_ground(const struct answer_told *t, size_t object)
+{
+	const struct box *own = box_of(t, object);
+	const double foot = own->centre[2] - own->half[2];
+	double ground = foot;
+
+	for (size_t o = 0; o < t->asking->model.lifted.objects; o++)
+		if (t->asking->model.extents[o].n)
+			ground = fmin(ground, box_of(t, o)->centre[2] - box_of(t, o)->half[2]);
+	return foot - ground > own->half[2] / 2 ? foot - ground : 2 * own->half[2];
+}
+
 double answering_length(const struct answer_told *t, size_t object, enum question_kind kind)
 {
 	const double *half = box_of(t, object)->half;
 
 	if (kind == QUESTION_HEIGHT)
-		return 2 * half[2];
+		return t->asked.relation == PARSE_ABOVE ? above_ground(t, object) : 2 * half[2];
 	return 2 * (kind == QUESTION_WIDTH ? fmax(half[0], half[1]) : cbrt(half[0] * half[1] * half[2]));
 }
 

@@ -102,14 +102,14 @@ static void put_thing(const struct answer_told *t, size_t object, FILE *out)
 static int is_yes_or_no(const struct answer_told *t)
 {
 	static const unsigned kinds = 1U << QUESTION_THERE | 1U << QUESTION_WHETHER | 1U << QUESTION_MORE |
-				      1U << QUESTION_TALLY | 1U << QUESTION_EVEN;
+				      1U << QUESTION_TALLY | 1U << QUESTION_EVEN | 1U << QUESTION_SAME;
 
 	return !t->is_unsure && kinds >> t->asked.kind & 1;
 }
 
 int answer_is_no(const struct answer_told *t)
 {
-	return !t->answer->count || (is_yes_or_no(t) && !t->is_yes);
+	return is_yes_or_no(t) ? !t->is_yes : !t->answer->count;
 }
 
 /* The length of a name without the number that tells it from others: "mug 2". */

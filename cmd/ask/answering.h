@@ -21,6 +21,10 @@ size_t answering_count_kinds(const struct answer_told *t);
 int answering_counts(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e);
 
+/* Whether the things are alike in t->asked's size or colour: t->is_yes. Likewise. */
+int answering_same(struct answer_told *t, struct asking_answer *found, struct asking *a,
+	const struct report *to, struct err *e);
+
 /* The length that a kind of question is about: the height of a box, its longer side, or their mean; and its
  * name. */
 double answering_length(const struct answer_told *t, size_t object, enum question_kind kind);

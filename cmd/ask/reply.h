@@ -77,6 +77,9 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
  * to fit. */
 void answer_looks(const struct answer_told *t, int is_colour, char *to, size_t room);
 
+/* Whether a thing is of a colour word's colour (lang/colours.h). */
+int answer_is_coloured(const struct answer_told *t, size_t thing, int colour);
+
 /* A line for each thing, or for a distance, or one that says why there is none; after the explanation, where
  * there is one. */
 int answer_put_words(const struct answer_told *t, FILE *out, struct err *e);

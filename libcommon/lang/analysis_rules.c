@@ -74,10 +74,16 @@ static void take_excepts(struct analysis *a, const struct tokens *t)
 	}
 }
 
-/* "an empty plate", "the plates are still empty": they carry nothing. */
+/* "an empty plate", "the plates are still empty": they carry nothing. What stands on something is not what
+ * has something on it. */
 static void take_empty(struct analysis *a, const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++) {
+		if (tokens_is(t, i, "on") && tokens_is(t, i + 1, "something|anything") && i + 2 == t->n &&
+			a->word[i].role == ROLE_PREDICATE) {
+			a->word[i].relation = PARSE_ON;
+			a->word[i + 1] = (struct analysis_word){.role = ROLE_ANCHOR, .head = i};
+		}
 		const int verb = tokens_class(t, i - 1) == CLOSED_ADVERB || tokens_is(t, i - 1, "still")
 					 ? i - 2
 					 : i - 1;

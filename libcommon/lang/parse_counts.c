@@ -34,7 +34,9 @@ static void count_phrase(struct build *b, int head, struct parse_phrase *f)
 		number = PARSE_ALL;
 	if (!number && build_names_kind(b, head) && build_is_plural(t, head))
 		number = PARSE_SEVERAL;
-	if (!number && tokens_is(t, head, "ones|things|objects|items|stuff|those|these"))
+	if (!number &&
+		tokens_is(t, head,
+			"ones|shapes|things|objects|items|stuff|tableware|crockery|cutlery|those|these"))
 		number = PARSE_SEVERAL;
 	f->count = number ? number : PARSE_ONE;
 	/* "of the two cups", "which of the cups", unless all are meant; not "think of both cups" */

@@ -17,7 +17,7 @@ static const struct {
 
 static const char *const names[QUESTION_KINDS] = {"which", "list", "number", "colour", "look", "distance",
 	"height", "width", "size", "compare", "more", "either", "there", "whether", "set", "tally", "even",
-	"majority", "surplus", "when", "then", "speed"};
+	"majority", "surplus", "same", "when", "then", "speed"};
 
 static const char *const class_names[CLOSED_CLASSES] = {
 	[CLOSED_BE] = "be", [CLOSED_AUXILIARY] = "do", [CLOSED_PRONOUN] = "pronoun", [CLOSED_HAVE] = "have"};
@@ -49,8 +49,12 @@ static int is_choice(const struct tokens *t, int at, const char *choice, size_t 
 
 	if (length == 1 && *choice == '$')
 		return class == CLOSED_SIZE || class == CLOSED_PLACE;
+	if (length == 1 && *choice == '^')
+		return (class == CLOSED_SIZE || class == CLOSED_PLACE) &&
+		       closed_words[t->word[at].closed].value == PARSE_MOST;
 	if (length == 1 && *choice == '#')
-		return class == CLOSED_NUMBER || tokens_is(t, at, "one");
+		return (class == CLOSED_NUMBER && closed_words[t->word[at].closed].value > 0) ||
+		       tokens_is(t, at, "one");
 	if (length == 1 && *choice == '%')
 		return class == CLOSED_ATTRIBUTE || colour_word(t->word[at].text) >= 0;
 	if (length == 1 && *choice == '~')
@@ -126,16 +130,22 @@ static int is_idle(const struct tokens *t, int i)
 
 static int match(struct matching *m, const char *said, int at);
 
-/* A capture that begins here and leaves the rest to match. */
-static int match_words(struct matching *m, int which, int is_place, const char *rest, int at)
+/* A capture that begins here and leaves the rest to match; kind: how it has to begin. */
+static int match_words(struct matching *m, int which, char kind, const char *rest, int at)
 {
 	const int class = tokens_class(m->tokens, at);
+	const int is_place = class == CLOSED_PLACE || class == CLOSED_PREPOSITION;
 
-	if (is_place && class != CLOSED_PLACE && class != CLOSED_PREPOSITION)
+	if ((kind == '@' && !is_place) ||
+		(kind == '&' && !is_place &&
+			!(at < m->tokens->n &&
+				(is_choice(m->tokens, at, "$", 1) || is_choice(m->tokens, at, "%", 1)))))
+		return 0;
+	if (which == CAPTURE_A && tokens_is(m->tokens, at, "what|which|who|where|how"))
 		return 0;
 	for (int end = at + 1; end <= m->tokens->n; end++) {
 		m->of[which] = (struct capture){at, end};
-		if (match(m, rest, end))
+		if (!tokens_is(m->tokens, end - 1, "the|my|your") && match(m, rest, end))
 			return 1;
 		if (end < m->tokens->n && is_break(m->tokens, m->text, end) && !is_listed(m->tokens, end))
 			break;
@@ -157,15 +167,15 @@ static int match(struct matching *m, const char *said, int at)
 		said++;
 		length--;
 	}
-	const int is_place = *said == '@';
+	const int begins = *said == '@' || *said == '&';
 	static const char captures[] = "ABC";
-	const char *mark = strchr(captures, said[is_place]);
-	if (length == (size_t)is_place + 1 && mark)
-		return match_words(m, (int)(mark - captures), is_place, rest, at);
+	const char *mark = strchr(captures, said[begins]);
+	if (length == (size_t)begins + 1 && mark)
+		return match_words(m, (int)(mark - captures), *said, rest, at);
 	const int is_free = said[length - 1] == '?';
 	if (is_element(m->tokens, at, said, length - (size_t)is_free)) {
 		const struct capture before = m->of[CAPTURE_WORD];
-		if (strchr("$%#~", *said))
+		if (strchr("$%#~^", *said))
 			m->of[CAPTURE_WORD] = (struct capture){at, at + 1};
 		if (match(m, rest, at + 1))
 			return 1;
@@ -182,8 +192,9 @@ static void fill(char to[QUESTION_TEXT], const char *asks, const struct matching
 
 	for (const char *c = asks; *c && n + 1 < QUESTION_TEXT; c++) {
 		const char mark = *c == '%' ? '$' : *c;
-		const char *is = *c == '@' ? NULL : strchr(marks, mark);
-		if (!is && *c != '@')
+		const int is_mark = *c == '@' || *c == '&';
+		const char *is = is_mark ? NULL : strchr(marks, mark);
+		if (!is && !is_mark)
 			to[n++] = *c;
 		if (!is)
 			continue;
@@ -242,10 +253,73 @@ static int is_side(int closed)
 	return relation >= 0 && (relation <= PARSE_BELOW || relation == PARSE_BETWEEN);
 }
 
-/* "us", "the camera". */
+/* "Nearer to us", and "the taller of the two": what the two are compared by is no thing. */
 static int is_viewer(const struct tokens *t, struct capture of)
 {
-	return tokens_class(t, of.end - 1) == CLOSED_PRONOUN;
+	return tokens_class(t, of.end - 1) == CLOSED_PRONOUN || tokens_class(t, of.end - 1) == CLOSED_NUMBER;
+}
+
+/* What a row's words say of how many; n: its number. */
+static void take_numbers(struct question_asked *q, const char *said, int n)
+{
+	const int is_fewer = strstr(said, "fewer") != NULL;
+
+	q->is_denied = q->kind == QUESTION_THERE &&
+		       (strstr(said, " no ") || strstr(said, "nothing") || strstr(said, "none"));
+	if (strchr(said, '#')) {
+		q->most = is_fewer ? n - 1 : strstr(said, "exactly") || strstr(said, "at most") ? n : 0;
+		q->least = is_fewer || strstr(said, "at most") ? 0 : n + (strstr(said, "more") != NULL);
+	}
+	if (q->kind == QUESTION_NUMBER)
+		q->least = strstr(said, "kinds") != NULL;
+	if (q->kind == QUESTION_WHETHER)
+		q->least = strstr(said, "only") != NULL;
+	if (q->kind == QUESTION_TALLY)
+		q->least = !strstr(said, "enough");
+	if (q->kind == QUESTION_MAJORITY)
+		q->least = is_fewer ? -1 : 1;
+}
+
+/* Where a place's thing begins: at "the mug" of "to the right of the mug". */
+static int find_object(const struct tokens *t, struct capture of)
+{
+	static const unsigned before = 1U << CLOSED_PLACE | 1U << CLOSED_PREPOSITION | 1U << CLOSED_SIZE;
+	int i = of.begin;
+
+	while (i < of.end &&
+		(tokens_is(t, i, "than") || (tokens_class(t, i) >= 0 && before >> tokens_class(t, i) & 1) ||
+			(tokens_class(t, i) == CLOSED_DETERMINER && i + 1 < of.end &&
+				tokens_class(t, i + 1) == CLOSED_PLACE)))
+		i++;
+	return i;
+}
+
+/* "Left or right of the mug" is left of the mug, too. */
+static void add_object(char to[QUESTION_TEXT], const struct matching *m, const char *text)
+{
+	const struct tokens *t = m->tokens;
+	const struct capture first = m->of[CAPTURE_B], second = m->of[CAPTURE_C];
+	const int at = find_object(t, second), last = first.end - 1;
+	const size_t n = strlen(to);
+
+	if (find_object(t, first) < first.end || at == second.end || at == second.begin)
+		return;
+	const char *of = tokens_class(t, last) == CLOSED_SIZE	       ? " than "
+			 : tokens_is(t, last, "left|right|front|back") ? " of "
+								       : " ";
+	snprintf(to + n, QUESTION_TEXT - n, "%s%.*s", of,
+		t->word[second.end - 1].span.end - t->word[at].span.begin, text + t->word[at].span.begin);
+}
+
+/* By what "the difference in height" compares. */
+static int relation_of_noun(const struct tokens *t)
+{
+	for (int i = 0; i < t->n; i++)
+		if (tokens_is(t, i, "height|width|length|size"))
+			return tokens_is(t, i, "height") ? PARSE_TALLER
+			       : tokens_is(t, i, "size") ? PARSE_LARGER
+							 : PARSE_WIDER;
+	return -1;
 }
 
 static void take(struct question_asked *q, size_t row, const struct matching *m, const char *text)
@@ -259,27 +333,33 @@ static void take(struct question_asked *q, size_t row, const struct matching *m,
 	for (int i = asks.end; i-- > asks.begin;)
 		if (word.end || (tokens_class(m->tokens, i) == CLOSED_PLACE && !is_side(closed)))
 			closed = m->tokens->word[i].closed;
-	q->relation = closed < 0 ? -1 : closed_words[closed].relation;
-	if (strchr(rows[row].said, '#'))
-		q->least = (tokens_is(m->tokens, word.begin, "one") ? 1 : closed_words[closed].value) +
-			   (strstr(rows[row].said, "more") != NULL);
-	if (q->kind == QUESTION_NUMBER)
-		q->least = strstr(rows[row].said, "kinds") != NULL;
-	if (q->kind == QUESTION_TALLY)
-		q->least = !strstr(rows[row].said, "enough");
-	if (q->kind == QUESTION_MAJORITY)
-		q->least = strstr(rows[row].said, "fewer") ? -1 : 1;
+	q->relation = closed >= 0 ? closed_words[closed].relation : -1;
+	if (q->kind == QUESTION_SET) /* "closest to the mug" is one */
+		q->most = closed >= 0 && closed_words[closed].value == PARSE_MOST &&
+			  (q->relation == PARSE_NEAR || q->relation == PARSE_FAR);
+	if (strstr(rows[row].said, "nearer|closer A"))
+		q->relation = PARSE_NEAR;
+	if (strstr(rows[row].said, "far above|"))
+		q->relation = PARSE_ABOVE;
+	if (strstr(rows[row].said, "difference") || strstr(rows[row].said, "same|equal"))
+		q->relation = relation_of_noun(m->tokens);
+	take_numbers(q, rows[row].said,
+		tokens_is(m->tokens, word.begin, "one") ? 1
+		: closed < 0				? 0
+							: closed_words[closed].value);
 	const struct capture about = m->of[m->of[CAPTURE_A].end ? CAPTURE_A : CAPTURE_B];
 	if (about.end)
 		q->about = (struct parse_span){
 			m->tokens->word[about.begin].span.begin, m->tokens->word[about.end - 1].span.end};
 	if (m->of[CAPTURE_C].end && !is_viewer(m->tokens, m->of[CAPTURE_C]))
-		fill(q->text[2], "C", m, text);
+		fill(q->text[2], q->kind == QUESTION_EITHER ? "A that is C" : "C", m, text);
 	for (int k = 0; k < 2; k++)
 		if (strcmp(rows[row].asks[k], "-") != 0)
 			fill(q->text[k], rows[row].asks[k], m, text);
 		else
 			snprintf(q->text[k], sizeof q->text[k], "%s", k ? "" : text);
+	if (q->kind == QUESTION_EITHER)
+		add_object(q->text[1], m, text);
 	name_one(q);
 }
 
@@ -303,6 +383,8 @@ static void leave_fillers(struct tokens *t)
 
 	for (int i = 0; i < t->n; i++) {
 		const int skip = filler_length(t, i);
+		if (skip == 4)
+			memcpy(t->word[n++].text, "so", 3);
 		if (skip)
 			i += skip - 1;
 		else

@@ -17,7 +17,7 @@ enum question_kind {
 	QUESTION_SIZE,	   /* how large */
 	QUESTION_COMPARE,  /* which of two is larger, higher, farther left */
 	QUESTION_MORE,	   /* whether the first of two is the larger, the higher */
-	QUESTION_EITHER,   /* which of two the first thing is: "black or white" */
+	QUESTION_EITHER,   /* which of the second and the third the first thing is: "black or white" */
 	QUESTION_THERE,	   /* whether it is there */
 	QUESTION_WHETHER,  /* whether the first, which is there, is the second */
 	QUESTION_SET,	   /* what stands in a relation: one thing, or where that is in doubt all that do */
@@ -25,6 +25,7 @@ enum question_kind {
 	QUESTION_EVEN,	   /* whether there are as many of the first as of the second */
 	QUESTION_MAJORITY, /* of which of two there are more */
 	QUESTION_SURPLUS,  /* how many more there are of the first than of the second */
+	QUESTION_SAME,	   /* whether things are alike in a size or, with no relation, in colour */
 	QUESTION_WHEN,	   /* when a thing moves */
 	QUESTION_THEN,	   /* where it is at the end, or was at the start */
 	QUESTION_SPEED,	   /* how fast it is */
@@ -38,8 +39,12 @@ struct question_asked {
 	int relation; /* enum parse_relation of the word of size or place that asks ("tall"), or that a place
 			 begins with ("on the tray"); -1 where there is none */
 	int least;    /* of QUESTION_NUMBER: 1 where kinds of things are counted; of QUESTION_THERE: how many
-			 have to be there, 0: any; of QUESTION_TALLY: by how many    there have to be more; of
-			 QUESTION_MAJORITY: -1 where it asks for fewer */
+			 have to be there, 0: any; of QUESTION_WHETHER: 1 where nothing else is the second; of
+			 QUESTION_TALLY: by how many there have to be more; of QUESTION_MAJORITY: -1 where it
+			 asks for fewer */
+	int most; /* of QUESTION_THERE: how many there may be, and of QUESTION_SET 1 where but one is; 0: any
+		     number */
+	int is_denied;		     /* of QUESTION_THERE: yes where none is */
 	char text[3][QUESTION_TEXT]; /* what to ask for; "" nothing. The third: what two are compared by */
 	struct parse_span about;     /* of the question: the thing that it asks about; empty: not known */
 };

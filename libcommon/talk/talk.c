@@ -109,14 +109,16 @@ static void ask_again(const struct question_asked *last, const char *question, c
 	struct tokens t;
 	char about[QUESTION_TEXT];
 	int begin = last->about.begin;
+	struct question_asked own;
 
 	tokens_take(&t, thing, NULL, NULL, 0);
 	snprintf(understood, QUESTION_TEXT, "%s", thing);
+	question_read(&own, thing, 0); /* "the mug's height" */
 	if (last->kind == QUESTION_DISTANCE && *last->text[1] && tokens_is(&t, 0, "from|to")) {
 		ask_distance(last, question, thing, understood);
 		return;
 	}
-	if (last->kind == QUESTION_WHICH || last->about.end <= begin)
+	if (last->kind == QUESTION_WHICH || own.kind != QUESTION_WHICH || last->about.end <= begin)
 		return;
 	/* "left of the mug" becomes "left of the kettle", but "on the mug" becomes "under the kettle" */
 	const int is_place = t.n && tokens_class(&t, 0) == CLOSED_PLACE;
@@ -166,6 +168,14 @@ static const struct meaning_set *understand_part(const struct talk *talk, const 
 	question_noun(part, noun);
 	if (!is && t.n > 1 && !*noun && tokens_class(&t, t.n - 1) == CLOSED_SIZE)
 		snprintf(of_those, sizeof of_those, "%.400s %s", part, r->kind);
+	/* "how many mugs are left of the tray? and right of it?": of the tray */
+	const char *about = talk->question + last->about.begin, *anchor = NULL;
+	for (const char *at = about; (at = strstr(at, " the ")) && at < talk->question + last->about.end;
+		at++)
+		anchor = at + strlen(" the ");
+	if (tokens_class(&t, 0) == CLOSED_PLACE && tokens_is(&t, t.n - 1, "it|that") && anchor)
+		snprintf(r->name, sizeof r->name, "%.*s", (int)(talk->question + last->about.end - anchor),
+			anchor);
 	const struct meaning_set *set = put_set(talk, is ? &talk->of : &talk->set, r, of_those, thing);
 
 	/* "what is on the tray? and the thing behind it?" is not what is on that */
@@ -216,21 +226,43 @@ static void find_referents(const struct talk *talk, char *const *names, size_t o
 		snprintf(r->noun, sizeof r->noun, "%s", noun);
 }
 
-/* "How much taller?", of the two things that were spoken of. */
-static int ask_how_much(const struct tokens *t, const struct referents *r, char understood[QUESTION_TEXT])
+/* The word by which a question compares: "taller". */
+static const char *find_more(const struct tokens *t)
 {
-	const int is_it = t->n == 5 && tokens_class(t, 3) == CLOSED_BE && tokens_is(t, 4, "it|that|he|she");
-	const int class = tokens_class(t, 2);
+	for (int i = 0; i < t->n; i++)
+		if (tokens_class(t, i) == CLOSED_SIZE && closed_words[t->word[i].closed].value == PARSE_MORE)
+			return t->word[i].text;
+	return NULL;
+}
 
-	if (!tokens_is(t, 0, "how") || !tokens_is(t, 1, "much") ||
-		(class != CLOSED_SIZE && class != CLOSED_PLACE) || (t->n > 3 && !is_it) ||
-		(!*r->things && !*r->other))
+/* "How much taller?", and "by how much?", of the two things that were spoken of; "and how wide?" of the last.
+ */
+static int ask_how(const struct talk *talk, const struct tokens *t, const struct referents *r,
+	char understood[QUESTION_TEXT])
+{
+	const int i = tokens_is(t, 0, "and|by|so"), is_much = tokens_is(t, i + 1, "much");
+	const int is_it =
+		t->n == i + 5 && tokens_class(t, i + 3) == CLOSED_BE && tokens_is(t, i + 4, "it|that|he|she");
+	const int class = tokens_class(t, i + 1 + is_much);
+	const char *word = i + 1 + is_much < t->n ? t->word[i + 1 + is_much].text : NULL;
+	struct tokens last;
+
+	if (!tokens_is(t, i, "how") || (t->n > i + 2 + is_much && !is_it))
 		return 0;
-	if (*r->things)
-		snprintf(understood, QUESTION_TEXT, "how much %s is %s", t->word[2].text, r->things);
+	tokens_take(&last, talk->question, NULL, NULL, 0);
+	if (is_much && !word)
+		word = find_more(&last);
+	else if (class != CLOSED_SIZE && (class != CLOSED_PLACE || !is_much))
+		return 0;
+	if (!word || (is_much && !*r->things && !*r->other))
+		return 0;
+	if (!is_much)
+		snprintf(understood, QUESTION_TEXT, "how %s is the %s", word, r->name);
+	else if (*r->things)
+		snprintf(understood, QUESTION_TEXT, "how much %s is %s", word, r->things);
 	else
-		snprintf(understood, QUESTION_TEXT, "how much %s is the %s than the %s", t->word[2].text,
-			r->name, r->other);
+		snprintf(understood, QUESTION_TEXT, "how much %s is the %s than the %s", word, r->name,
+			r->other);
 	return 1;
 }
 
@@ -251,7 +283,7 @@ const struct meaning_set *talk_understand(const struct talk *talk, char *const *
 	tokens_take(&t, question, NULL, NULL, 0);
 	question_read(&last, talk->question, 0);
 	find_referents(talk, names, objects, &last, &r);
-	if (ask_how_much(&t, &r, understood))
+	if (ask_how(talk, &t, &r, understood))
 		return NULL;
 	const int other = is_other(&t), thing = find_again(talk, &last, &t, question);
 	if (other == t.n || thing >= 0) {

@@ -40,4 +40,4 @@ for file in "$here/questions/$1"/*.jsonl; do
 			else (.things | sort) == ([$r.things[].name] | sort) end)}' >>"$work/answers"
 done
 jq -rs 'def row: "\(map(select(.right)) | length)/\(length)"; (group_by(.kind)[] | "\(.[0].kind)\t\(row)"), "all\t\(row)"' "$work/answers"
-[ "$1" = kept-back ] || jq -r 'select(.right | not) | "\(.question) | \(.answer) | \(.reply | "\(.kind): \(.value // .reason // "") \([.things[].name] | join(", "))")"' "$work/answers"
+[ "$1" != looked-at ] || jq -r 'select(.right | not) | "\(.question) | \(.answer) | \(.reply | "\(.kind): \(.value // .reason // "") \([.things[].name] | join(", "))")"' "$work/answers"

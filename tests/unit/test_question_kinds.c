@@ -26,7 +26,16 @@ static void kinds(void)
 	is("how high is my mug", QUESTION_HEIGHT, "my mug", "");
 	is("what's left of the mug?", QUESTION_SET, "what's left of the mug?", "");
 	is("is the mug larger than the red one?", QUESTION_MORE, "the mug", "the red mug");
-	is("is the mug black or white?", QUESTION_EITHER, "the mug that is black", "the mug that is white");
+	is("is the mug black or white?", QUESTION_EITHER, "the mug", "the mug that is black");
+	is("is the mug left or right of the jug?", QUESTION_EITHER, "the mug",
+		"the mug that is left of the jug");
+	is("is the mug the only red thing?", QUESTION_WHETHER, "the mug", "the red thing");
+	is("is the mug the largest thing?", QUESTION_WHETHER, "the mug", "the largest thing");
+	is("is there nothing on the tray?", QUESTION_THERE, "everything that is on the tray", "");
+	is("are there fewer than four mugs?", QUESTION_THERE, "all mugs", "");
+	is("is the mug closer to the jug or to the tray?", QUESTION_COMPARE, "the jug", "the tray");
+	is("do the mugs have the same colour?", QUESTION_SAME, "the mugs", "");
+	is("is it true that the mug is red?", QUESTION_WHETHER, "the mug", "the mug that is red");
 	is("the mug is on the tray, isn't it?", QUESTION_WHETHER, "the mug", "the mug that is on the tray");
 	is("the mug is on the tray, give me that", QUESTION_WHICH, "the mug is on the tray, give me that",
 		"");
