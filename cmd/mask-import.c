@@ -2,6 +2,7 @@
 #include "base/mem.h"
 #include "cli/cli.h"
 #include "cmd/masks/painting.h"
+#include "formats/records/foreign.h"
 
 static const char *names_path, *undistort;
 
@@ -41,6 +42,10 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 	SCOPED_BY(painting_names_free) struct painting_names names = {0};
 	SCOPED_BY(warping_free) struct warping warping = {0};
 
+	for (int i = 0; i < c->operand_count; i++)
+		if (painting_needs_names(c->operands[i]) &&
+			foreign_file(c->operands[i], FOREIGN_MASKS, "", 0, e))
+			return -1;
 	check(c);
 	return -((names_path && painting_names_read(&names, names_path, e)) ||
 		 warping_open(&warping, undistort ? WARP_TO_VIEW : WARP_NONE, undistort, e) ||

@@ -21,10 +21,12 @@
 static const char every[] = "every:";
 
 /* The camera file in a folder: the folder itself where it is a COLMAP model, else the first there is of
- * cameras.json, sparse/0, sparse, transforms.json, 0. free() it. NULL with *e (ERR_FORMAT) without. */
+ * cameras.json, sparse/0, sparse, transforms.json, 0, transforms_train.json. free() it. NULL with *e
+ * (ERR_FORMAT) without. */
 static char *find_cameras_in(const char *dir, struct err *e)
 {
-	static const char *const places[] = {"cameras.json", "sparse/0", "sparse", "transforms.json", "0"};
+	static const char *const places[] = {
+		"cameras.json", "sparse/0", "sparse", "transforms.json", "0", "transforms_train.json"};
 
 	if (colmap_is_model(dir))
 		return mem_strdup(dir, e);
@@ -37,7 +39,7 @@ static char *find_cameras_in(const char *dir, struct err *e)
 		free(path);
 	}
 	err_set(e, ERR_FORMAT,
-		"%s: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json",
+		"%s: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin, in small letters), cameras.json, sparse/0, sparse or transforms.json",
 		dir);
 	return NULL;
 }

@@ -143,24 +143,11 @@ static int put_file_name(const struct exporting *x, struct jsontext *to, const c
 /* left, top, width, height; 0 of an empty mask. */
 static void put_bounds(struct jsontext *to, const struct rle *r)
 {
-	size_t low[2] = {SIZE_MAX, SIZE_MAX}, high[2] = {0}, at = 0;
-	const size_t height = (size_t)r->height;
+	double b[4] = {0, 0, -1, -1};
 	char text[96];
 
-	for (size_t k = 0; k < r->n; at += r->runs[k++]) {
-		if (k % 2 == 0 || !r->runs[k])
-			continue;
-		const size_t last = at + r->runs[k] - 1, is_long = at / height != last / height;
-		const size_t from[2] = {at / height, is_long ? 0 : at % height},
-			     until[2] = {last / height, is_long ? height - 1 : last % height};
-		for (int d = 0; d < 2; d++) {
-			low[d] = from[d] < low[d] ? from[d] : low[d];
-			high[d] = until[d] + 1 > high[d] ? until[d] + 1 : high[d];
-		}
-	}
-	if (!high[0])
-		low[0] = low[1] = 0;
-	snprintf(text, sizeof text, "[%zu,%zu,%zu,%zu]", low[0], low[1], high[0] - low[0], high[1] - low[1]);
+	mask_place_bounds(r, b);
+	snprintf(text, sizeof text, "[%.0f,%.0f,%.0f,%.0f]", b[0], b[1], b[2] - b[0] + 1, b[3] - b[1] + 1);
 	jsontext_raw(to, "bbox", text);
 }
 

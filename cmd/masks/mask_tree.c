@@ -122,8 +122,9 @@ int mask_tree_each(const char *dir, mask_tree_put *put, void *to, struct err *e)
 	int bad = read_classes(&w, e) || walk_views(&w, e);
 
 	if (!bad && !w.pictures)
-		bad = err_set(e, ERR_FORMAT, "%s: has no masks VIEW/NAME.png%s", dir,
-			w.classes ? " of the names in classes.txt" : "");
+		bad = err_set(e, ERR_FORMAT,
+			"%s: has no masks VIEW/NAME.png%s; give pictures of views, and labels, one by one",
+			dir, w.classes ? " of the names in classes.txt" : "");
 	free(w.classes);
 	return bad ? -1 : 0;
 }

@@ -83,8 +83,9 @@ static int check_picture(struct putting *p, struct annotations *a, const char *p
 		return 0;
 	for (size_t i = 0; i < p->labelled_count; i++) {
 		const struct labelled *one = &p->labelled[i];
-		if (!strcmp(one->view, a->view) && strcmp(one->picture, a->picture))
-			return painting_two_pictures(one->file, path, a->view, e);
+		const int same = strcmp(one->view, a->view) != 0 || path_is_same(one->picture, a->picture, e);
+		if (same <= 0)
+			return same < 0 ? -1 : painting_two_pictures(one->file, path, a->view, e);
 	}
 	if (mem_grow((void **)&p->labelled, &p->labelled_room, p->labelled_count + 1, sizeof *p->labelled,
 		    "pictures", e))
@@ -130,19 +131,9 @@ static int put_records(const char *path, struct warping *w, FILE *out, size_t *c
 	return got;
 }
 
-static int is_labelled(const char *path)
-{
-	return path_ends(path, ".json");
-}
-
-static int is_records(const char *path)
-{
-	return path_ends(path, ".jsonl");
-}
-
 int painting_needs_names(const char *path)
 {
-	return !is_labelled(path) && !is_records(path) && !file_is_dir(path);
+	return !path_ends(path, ".json") && !path_ends(path, ".jsonl") && !file_is_dir(path);
 }
 
 static int put_tree_mask(void *to, const char *path, const char *view, const char *name, struct err *e)
@@ -169,9 +160,9 @@ static int put_tree_mask(void *to, const char *path, const char *view, const cha
 
 static int put_any(struct putting *p, const char *path, struct err *e)
 {
-	if (is_labelled(path))
+	if (path_ends(path, ".json"))
 		return put_labelled(p, path, e);
-	if (is_records(path))
+	if (path_ends(path, ".jsonl"))
 		return put_records(path, p->w, p->out, &p->count, e);
 	if (file_is_dir(path))
 		return mask_tree_each(path, put_tree_mask, p, e);

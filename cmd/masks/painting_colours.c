@@ -20,19 +20,36 @@ void painting_names_free(struct painting_names *names)
 	*names = (struct painting_names){0};
 }
 
-/* "#rrggbb" or "0" to "65535" at the beginning of a line: where it ends, or NULL. */
+/* What may be between a colour and its name, or the parts of a colour. */
+static const char separators[] = " \t,;:=";
+
+/* "#rrggbb", "R,G,B" or "0" to "65535" at the beginning of a line: where the name begins, or NULL. */
 static char *take_colour(char *text, uint32_t *colour)
 {
 	const int is_hex = *text == '#';
-	char *end, *digits = text + is_hex;
-	const size_t n = strspn(digits, is_hex ? "0123456789abcdefABCDEF" : "0123456789");
-	const unsigned long value = strtoul(digits, &end, is_hex ? 16 : 10);
+	const char *digits = is_hex ? "0123456789abcdefABCDEF" : "0123456789";
+	unsigned long parts[3];
+	char *ends[3];
+	int n = 0;
 
-	if (end != digits + n || (is_hex ? n != 6 : !n || value > 65535 || n > (value > 255 ? 5 : 3)) ||
-		!strchr(" \t", *end))
+	for (char *at = text + is_hex; n < (is_hex ? 1 : 3);
+		at = ends[n] + strspn(ends[n], separators), n++) {
+		const size_t length = strspn(at, digits);
+		ends[n] = at + length;
+		if (!length || length > 6 || !at[length] || !strchr(separators, at[length]))
+			break;
+		parts[n] = strtoul(at, NULL, is_hex ? 16 : 10);
+	}
+	if (n == 2) /* a number, and a name that begins with one */
+		n = 1;
+	if (!n || (is_hex	   ? ends[0] != text + 7
+			  : n == 1 ? parts[0] > 65535
+				   : (parts[0] | parts[1] | parts[2]) > 255))
 		return NULL;
-	*colour = is_hex ? (uint32_t)value : png_paint_number((uint32_t)value);
-	return end;
+	*colour = n == 3   ? (uint32_t)(parts[0] << 16 | parts[1] << 8 | parts[2])
+		  : is_hex ? (uint32_t)parts[0]
+			   : png_paint_number((uint32_t)parts[0]);
+	return ends[n - 1] + strspn(ends[n - 1], separators);
 }
 
 /* The name of a colour, or NULL. */
@@ -54,13 +71,18 @@ static int has_name(const struct painting_names *names, const char *name)
 
 static int add_name(struct painting_names *names, const struct jsonl *j, struct err *e)
 {
-	char *text = j->line + strspn(j->line, " \t"), fault[NAME_FAULT];
+	char fault[NAME_FAULT], *text = name_trim(j->line);
 	uint32_t colour;
-	char *name = take_colour(text, &colour);
 
+	for (char *quote = text; (quote = strchr(quote, '"'));)
+		*quote = ' ';
+	text = name_trim(text);
+	if (!*text || (*text == '#' && strchr("# \t", text[1])))
+		return 0; /* a comment */
+	char *name = take_colour(text, &colour);
 	if (!name)
-		return jsonl_err(j, e, "does not begin with #rrggbb or 0 to 65535, and a blank");
-	name = name_trim(name);
+		return jsonl_err(j, e,
+			"does not begin with #rrggbb, R,G,B or 0 to 65535, and a blank or comma before the name");
 	const char *reason = name_fault(name, NAME_DATA, fault);
 	if (reason)
 		return jsonl_err(j, e, "the name %s", reason);
@@ -190,7 +212,7 @@ static int check_colours(
 			end++;
 		const uint32_t near = nearest(names, sorted[first], NEAR + 1);
 		covered += near != PNG_PAINT_NONE ? end - first : 0;
-		moved += near != PNG_PAINT_NONE && near != sorted[first] ? end - first : 0;
+		moved += near && near != PNG_PAINT_NONE && near != sorted[first] ? end - first : 0;
 	}
 	if ((is_grey || colours > LABELS_MOST) && (double)covered >= lossy_share * (double)pixels &&
 		(double)moved > unnamed_share * (double)pixels) {

@@ -193,22 +193,35 @@ static void *read_pixels(struct png_job *job, const char *path, FILE *given, siz
 	return NULL;
 }
 
-/* What is of a mask is at least so bright: 1, or half where values, near black and near white and few
+/* The brightest of a pixel's colours, in 8 bits. */
+static unsigned brightness(const struct png_job *job, size_t pixel)
+{
+	unsigned most = 0;
+
+	for (int k = 0; k < (job->channels < 3 ? 1 : 3); k++) {
+		const unsigned value = sample(job, pixel, k) >> (job->depth - 8);
+		most = value > most ? value : most;
+	}
+	return most;
+}
+
+/* What is of a mask is at least so bright: 1, or half where values, near black and near the brightest and few
  * between, show that it was a JPEG or scaled. */
 static unsigned least_bright(const struct png_job *job)
 {
-	const int colours = job->channels < 3 ? 1 : 3;
+	const size_t n = pixels_of(job);
 	size_t counts[4] = {0};
+	unsigned most = job->channels < 3 ? 255 : 64;
 
-	for (size_t i = 0, n = pixels_of(job); i < n; i++) {
-		unsigned value = 0;
-		for (int k = 0; k < colours; k++) {
-			const unsigned next = sample(job, i, k) >> (job->depth - 8);
-			value = next > value ? next : value;
-		}
-		counts[value / 64] += value && value < 255;
+	for (size_t i = 0; i < n && job->channels >= 3; i++)
+		most = brightness(job, i) > most ? brightness(job, i) : most;
+	for (size_t i = 0; i < n; i++) {
+		const unsigned value = brightness(job, i);
+		counts[4 * value / (most + 1)] += value && value < most;
 	}
-	return counts[0] && counts[3] && counts[1] + counts[2] < counts[3] ? 128u << (job->depth - 8) : 1;
+	return counts[0] && counts[3] && counts[1] + counts[2] < counts[3]
+		       ? (most + 1) / 2 << (job->depth - 8)
+		       : 1;
 }
 
 int png_take_mask(const char *path, FILE *in, uint8_t **pixels, int *height, int *width, struct err *e)

@@ -150,33 +150,21 @@ static int read_object(struct reading *r, const cJSON *object, const char *view,
 	return on && !reading_draw(r, on, count, e) ? take_box(r, object, on, e) : -1;
 }
 
-static int read_isat(struct reading *r, const cJSON *root, struct err *e)
+/* Ref-LERF's: a PNG in the folder gt_mask beside that of the labels. */
+static int read_pictured(
+	struct reading *r, const char *json, const cJSON *object, const char *view, struct err *e)
 {
-	const cJSON *info = json_get(root, "info"), *object;
-	const char *image;
-	size_t i = 0;
+	const char *name, *picture;
 
-	if (json_string(info, "name", 1, &image, r->where, e) < 0 ||
-		reading_size(r, info, "height", "width", e))
+	if (json_string(object, "category", 1, &name, r->where, e) < 0 ||
+		json_string(object, "segmentation", 1, &picture, r->where, e) < 0)
 		return -1;
-	const char *view = reading_picture(r, r->path, image, e);
-	int bad = !view;
-	cJSON_ArrayForEach(object, json_get(root, "objects"))
-	{
-		snprintf(r->where, WHERE, "%s: object %zu", r->path, i++);
-		bad = bad || read_object(r, object, view, e);
-	}
-	return bad ? -1 : 0;
-}
-
-/* Draws a PNG's mask of a name: Ref-LERF has it in the folder gt_mask beside that of the labels. */
-static int read_mask_picture(struct reading *r, const char *folder, const char *picture, const char *view,
-	const char *name, struct err *e)
-{
 	if (path_leaves(picture))
 		return err_file(
 			e, r->where, "key 'segmentation': '%.200s' is not in the folder gt_mask", picture);
-	SCOPED char *path = file_join(folder, picture, "", e);
+	SCOPED char *folder = file_dir(json, e),
+		    *masks = folder ? file_join(folder, "../gt_mask", "", e) : NULL,
+		    *path = masks ? file_join(masks, picture, "", e) : NULL;
 	SCOPED uint8_t *pixels = NULL;
 	SCOPED_BY(rle_free) struct rle mask = {0};
 	int bad = !path || png_read_mask(path, &pixels, &r->height, &r->width, e) ||
@@ -186,24 +174,24 @@ static int read_mask_picture(struct reading *r, const char *folder, const char *
 	return !on || reading_unite(r, on, &mask, e) ? -1 : 0;
 }
 
-static int read_ref_lerf(
+/* ISAT's, or where a file is given Ref-LERF's in it. */
+static int read_objects(
 	struct reading *r, const cJSON *root, const cJSON *objects, const char *json, struct err *e)
 {
-	const cJSON *object;
-	const char *image, *name, *picture;
+	const cJSON *info = json_get(root, "info"), *object;
+	const char *image;
 	size_t i = 0;
 
-	if (json_string(json_get(root, "info"), "name", 1, &image, r->where, e) < 0)
+	if (json_string(info, "name", 1, &image, r->where, e) < 0 ||
+		(!json && reading_size(r, info, "height", "width", e)))
 		return -1;
-	SCOPED char *view = reading_view(r, image, e), *folder = file_dir(json, e),
-		    *masks = folder ? file_join(folder, "../gt_mask", "", e) : NULL;
-	int bad = !view || !masks;
+	const char *view = reading_picture(r, r->path, image, e);
+	int bad = !view;
 	cJSON_ArrayForEach(object, objects)
 	{
 		snprintf(r->where, WHERE, "%s: object %zu", r->path, i++);
-		bad = bad || json_string(object, "category", 1, &name, r->where, e) < 0 ||
-		      json_string(object, "segmentation", 1, &picture, r->where, e) < 0 ||
-		      read_mask_picture(r, masks, picture, view, name, e);
+		bad = bad ||
+		      (json ? read_pictured(r, json, object, view, e) : read_object(r, object, view, e));
 	}
 	return bad ? -1 : 0;
 }
@@ -233,10 +221,9 @@ static int read_any(struct reading *r, const cJSON *root, const char *path, stru
 		return read_labelme(r, root, e);
 	if (is_coco || cJSON_IsArray(list))
 		return reading_annotations(r, root, e);
-	if (pictures)
-		return read_ref_lerf(r, root, pictures, path, e);
-	if (cJSON_IsArray(json_get(root, "objects")))
-		return read_isat(r, root, e);
+	if (pictures || (json_get(root, "info") && cJSON_IsArray(json_get(root, "objects"))))
+		return read_objects(
+			r, root, pictures ? pictures : json_get(root, "objects"), pictures ? path : NULL, e);
 	return foreign_json(root, r->path, e)
 		       ? -1
 		       : err_file(e, r->path,

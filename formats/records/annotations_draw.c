@@ -29,27 +29,6 @@ char *reading_view(const struct reading *r, const char *image, struct err *e)
 	return *stem ? name_to_view(stem, e) : NULL;
 }
 
-/* Takes ".", and ".." with what is before it, out of a path. */
-static void simplify(char *path)
-{
-	char *to = path;
-
-	for (const char *from = path; *from;) {
-		const size_t n = strcspn(from, "/"), next = n + (from[n] == '/');
-		if (n == 2 && !memcmp(from, "..", 2) && to > path + 1 &&
-			!(to - path >= 3 && !memcmp(to - 3, "../", 3))) {
-			do
-				to--;
-			while (to > path && to[-1] != '/');
-		} else if ((n != 1 || *from != '.') && (n || from == path)) {
-			memmove(to, from, next);
-			to += next;
-		}
-		from += next;
-	}
-	*to = 0;
-}
-
 const char *reading_picture(struct reading *r, const char *json, const char *image, struct err *e)
 {
 	struct annotations *a = r->to;
@@ -61,8 +40,6 @@ const char *reading_picture(struct reading *r, const char *json, const char *ima
 		a->view = reading_view(r, image, e);
 	if (!a->picture && path && folder)
 		a->picture = file_join(strchr(path, ':') ? "." : folder, path, "", e);
-	if (a->picture)
-		simplify(a->picture);
 	return a->picture ? a->view : NULL;
 }
 
@@ -193,13 +170,13 @@ int reading_unite(struct reading *r, struct annotation *on, const struct rle *ma
 }
 
 /* Points of the picture, or a little beside it: not shares of it, nor of a picture of another size. */
-static int check_points(struct reading *r, size_t count, struct err *e)
+static int check_points(const struct reading *r, const double *points, size_t count, struct err *e)
 {
 	const double least = -(1 + edge_share * fmax(r->width, r->height));
 	int is_share = r->width > 1 && r->height > 1;
 
 	for (size_t i = 0; i < count; i++) {
-		const double x = r->points[2 * i], y = r->points[2 * i + 1];
+		const double x = points[2 * i], y = points[2 * i + 1];
 		is_share = is_share && x >= 0 && x <= 1 && y >= 0 && y <= 1;
 		if (x < least || y < least || x > r->width - least || y > r->height - least)
 			return err_file(e, r->where,
@@ -230,45 +207,33 @@ int reading_draw(struct reading *r, struct annotation *on, size_t count, struct 
 {
 	if (count < 3)
 		return reading_leave_out(r, "outlines of fewer than three corners", e);
-	return check_points(r, count, e) ? -1 : fill(r, on, count, e);
-}
-
-/* A rectangle that is turned may reach out of the picture, if its middle does not: what is checked. */
-static int check_middle(struct reading *r, size_t count, struct err *e)
-{
-	double middle[2] = {0}, *points = r->points;
-
-	for (size_t i = 0; i < count; i++) {
-		middle[0] += points[2 * i] / (double)count;
-		middle[1] += points[2 * i + 1] / (double)count;
-	}
-	r->points = middle;
-	const int bad = check_points(r, 1, e);
-	r->points = points;
-	return bad;
+	return check_points(r, r->points, count, e) ? -1 : fill(r, on, count, e);
 }
 
 int reading_draw_shape(
 	struct reading *r, const char *type, size_t count, const char *view, const char *name, struct err *e)
 {
-	static const char *const turned[] = {"rotation", "oriented_rectangle", "rotated_rectangle"};
-	static const char *const others[] = {"polygon", "rectangle", "circle", "quadrilateral"};
+	static const char *const types[] = {"rotation", "oriented_rectangle", "rotated_rectangle", "polygon",
+		"rectangle", "circle", "quadrilateral"};
+	enum { TURNED = 3 /* of them */, TYPES = sizeof types / sizeof *types };
 	const int is_circle = !strcmp(type, "circle"), is_pair = count == 2;
-	int is_turned = 0, is_known = 0;
+	double middle[2] = {0};
 	char kind[64];
+	int k = 0;
 
-	for (size_t k = 0; k < sizeof turned / sizeof *turned; k++)
-		is_turned = is_turned || !strcmp(type, turned[k]);
-	for (size_t k = 0; k < sizeof others / sizeof *others; k++)
-		is_known = is_known || !strcmp(type, others[k]);
-	if (!is_known && !is_turned) {
+	while (k < TYPES && strcmp(type, types[k]) != 0)
+		k++;
+	if (k == TYPES) {
 		snprintf(kind, sizeof kind, "shapes of type '%.40s'", type);
 		return reading_leave_out(r, kind, e);
 	}
 	const int is_made = is_pair && (is_circle || !strcmp(type, "rectangle"));
 	if (count < 3 && !is_made)
 		return reading_leave_out(r, "outlines of fewer than three corners", e);
-	if ((is_turned ? check_middle : check_points)(r, count, e) ||
+	/* a rectangle that is turned may reach out of the picture, if its middle does not */
+	for (size_t i = 0; i < 2 * count; i++)
+		middle[i % 2] += r->points[i] / (double)count;
+	if (check_points(r, k < TURNED ? middle : r->points, k < TURNED ? 1 : count, e) ||
 		(is_made && round_out(r, is_circle, &count, e)))
 		return -1;
 	struct annotation *on = reading_find(r, view, name, e);

@@ -11,7 +11,7 @@
 int foreign_json(const cJSON *root, const char *name, struct err *e);
 
 /* A file that is none of those read there, by its name or how it begins. */
-enum foreign_place { FOREIGN_SPLATS, FOREIGN_CAMERAS };
+enum foreign_place { FOREIGN_SPLATS, FOREIGN_CAMERAS, FOREIGN_MASKS };
 int foreign_file(const char *name, enum foreign_place place, const void *data, size_t len, struct err *e);
 
 /* ERR_FORMAT, "NAME: WHAT: WAY OUT", in which %s is the name, and %b that without its ending: -1. */

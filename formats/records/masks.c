@@ -245,6 +245,10 @@ static int find_view(
 	int is_so = 0;
 
 	*at = names_find(names, m->view);
+	/* Label Studio puts eight digits before the names of pictures. */
+	const char *own = strspn(m->view, "0123456789abcdef") == 8 && m->view[8] == '-' ? m->view + 9 : NULL;
+	if (*at == NAMES_NONE && own)
+		is_so = (*at = names_find(names, own)) != NAMES_NONE;
 	for (size_t v = 0; v < c->n && *at == NAMES_NONE; v++)
 		if ((is_so = view_is_called(&c->views[v], m->view, e)) > 0)
 			*at = v;
@@ -290,8 +294,11 @@ static int leave_out(struct masks *set, long *lines, size_t *views, const char *
 	if (kept == set->n)
 		return 0;
 	if (!kept)
-		return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'%s",
-			file_name(path), lines[first], set->items[first].view, names_few(names, few));
+		return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'%s%s",
+			file_name(path), lines[first], set->items[first].view, names_few(names, few),
+			strstr(set->items[first].view, ".rf.")
+				? ": Roboflow renames pictures, and may stretch and turn them: export without that, and rename the views"
+				: "");
 	report_warn(to,
 		"%s:%ld: the scene has no view '%.300s': %zu of %zu masks, of views that it lacks, are left out",
 		file_name(path), lines[first], set->items[first].view, set->n - kept, set->n);

@@ -123,8 +123,8 @@ static int lengthen_shared(struct entry *entries, size_t n, const char *path, st
 	for (size_t i = 0; i + 1 < n; i++)
 		if (!strcmp(entries[i].view.name, entries[i + 1].view.name)) {
 			if (entries[i].level == ESCAPED_PATH && entries[i + 1].level == ESCAPED_PATH)
-				return err_file(
-					e, path, "two views have the name '%s'", entries[i].view.name);
+				return err_file(e, path, "two views are of '%s': take one out",
+					entries[i].view.image);
 			entries[i].is_shared = entries[i + 1].is_shared = was_shared = 1;
 		}
 	for (size_t i = 0; i < n; i++) {

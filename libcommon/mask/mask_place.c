@@ -40,8 +40,7 @@ static double scaled_pixel(double at, int from, int to)
 	return floor(scaled(at, from, to) + 0.5);
 }
 
-/* left, top, right, bottom of the foreground: its first and last columns and rows; 0: empty. */
-static int bounds(const struct rle *r, double box[4])
+int mask_place_bounds(const struct rle *r, double box[4])
 {
 	const size_t height = (size_t)r->height;
 	size_t at = 0, left = SIZE_MAX, right = 0, top = height, bottom = 0;
@@ -74,8 +73,9 @@ int mask_place_in_box(
 	double box[4];
 
 	if (!boxes || !boxes->box_count)
-		return bounds(truth, box) && is_within(scaled_pixel(peak[0], width, truth->width),
-						     scaled_pixel(peak[1], height, truth->height), box);
+		return mask_place_bounds(truth, box) &&
+		       is_within(scaled_pixel(peak[0], width, truth->width),
+			       scaled_pixel(peak[1], height, truth->height), box);
 	for (size_t i = 0; i < boxes->box_count; i++)
 		if (is_within(x, y, boxes->boxes[i]))
 			return 1;

@@ -23,6 +23,9 @@ void mask_place_free(struct mask_place *p);
 /* Appends a box, whose corners may be in any order. */
 int mask_place_add_box(struct mask_place *p, const double box[4], struct err *e);
 
+/* left, top, right, bottom of the foreground: its first and last columns and rows; 0: empty. */
+int mask_place_bounds(const struct rle *r, double box[4]);
+
 /* Whether a point, in pixels of a mask of height x width, lies in a box of the truth, its edges counting; the
  * box around the truth's mask where `boxes` has none (NULL: none). It is brought to the truth's size. */
 int mask_place_in_box(

@@ -43,7 +43,7 @@ frame() { jq -sc '[(map(.size) | unique[]), (map(.box) | [map(.[0]) | min, (map(
 	cp red.png b/v.png
 	cp red.png 'two words.PNG'
 	[ "$(find_in red.png b/v.png a/v.png 'two words.PNG' | jq -r .view | uniq)" = $'red\nb_v\na_v\ntwo words' ]
-	refused 3 "the pictures: two views have the name 'red.png'" red.png red.png
+	refused 3 "the pictures: two views are of 'red.png': take one out" red.png red.png
 }
 
 @test "greys, palettes' like, 16 bits, what is transparent, and JPEG" {

@@ -68,12 +68,12 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model s.ply
 @test "cameras that are missing" {
 	says 4 "gs-import: none: No such file or directory" "$BIN/gs-import" --cameras none -o scene s.ply
 	mkdir empty
-	says 3 "gs-import: empty: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json" \
+	says 3 "gs-import: empty: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin, in small letters), cameras.json, sparse/0, sparse or transforms.json" \
 		"$BIN/gs-import" --cameras empty -o scene s.ply
-	says 2 "gs-import: --cameras is not given, and .: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json
+	says 2 "gs-import: --cameras is not given, and .: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin, in small letters), cameras.json, sparse/0, sparse or transforms.json
 Try 'gs-import --help'." "$BIN/gs-import" -o scene s.ply
 	rm model/images.txt
-	says 3 "gs-import: model: no cameras here: no COLMAP model, cameras.json, sparse/0, sparse or transforms.json" \
+	says 3 "gs-import: model: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin, in small letters), cameras.json, sparse/0, sparse or transforms.json" \
 		"$BIN/gs-import" --cameras model -o scene s.ply
 	[ ! -e scene ]
 }
@@ -82,6 +82,8 @@ Try 'gs-import --help'." "$BIN/gs-import" -o scene s.ply
 	mkdir -p x/sparse
 	cp s.ply x
 	transforms "frames=[$(frame 'file_path="transforms"')]" >x/transforms.json
+	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["transforms","train"]' ]
+	mv x/transforms.json x/transforms_train.json
 	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["transforms","train"]' ]
 	colmap x/sparse
 	sed -i 's/a.jpg/sparse.jpg/' x/sparse/images.txt

@@ -111,16 +111,42 @@ refuses() {
 
 @test "names that are malformed: exact messages" {
 	names() { printf "$1" >names; }
-	names '#ff0000 cup\n#ff00 mug\n' && refuses 3 "names:2: does not begin with #rrggbb or 0 to 65535, and a blank"
-	for bad in 'ff0000 cup' '65536 cup' '-1 cup' '0003 cup' '#ff00001 cup' '3cup' '# cup' 'cup'; do
-		names "$bad" && refuses 3 "names:1: does not begin with #rrggbb or 0 to 65535, and a blank"
+	names '#ff0000 cup\n#ff00 mug\n' && refuses 3 "names:2: does not begin with #rrggbb, R,G,B or 0 to 65535, and a blank or comma before the name"
+	for bad in 'ff0000 cup' '65536 cup' '-1 cup' '#ff00001 cup' '3cup' '256,0,0 cup' 'cup'; do
+		names "$bad" && refuses 3 "names:1: does not begin with #rrggbb, R,G,B or 0 to 65535, and a blank or comma before the name"
 	done
-	names '3 \n' && refuses 3 "names:1: the name is empty"
+	names '3 ,\n' && refuses 3 "names:1: the name is empty"
 	names '3 caf\xe9\n' && refuses 3 "names:1: the name is not UTF-8 at byte 4"
 	names '3 cup\n#030303 mug\n' && refuses 3 "names:2: its colour or number has a name already"
 	names '3 cup\n4 cup\n' && refuses 3 "names:2: the name 'cup' has a colour already"
-	names '\n' && refuses 3 "names: holds no names"
+	names '\n# a comment' && refuses 3 "names: holds no names"
 	names '9 cup\n' && refuses 3 "view_1.png: has none of the colours that have names"
+}
+
+@test "names as tables have them: commas, quotes, three numbers, comments" {
+	for line in '#ff0000,red cup' '"#ff0000","red cup"' '#ff0000: red cup' '255,0,0,red cup' '255 0 0\tred cup\r' '# colours\n#ff0000;\xc2\xa0red cup '; do
+		printf "$line\n" >names
+		"$BIN/mask-import" -q --names names -o made.jsonl view_1.png
+		[ "$(jq -r .object made.jsonl)" = "red cup" ]
+	done
+	printf '3 2 mugs\n5 2nd mug\n0000ff x\n' >names
+	refuses 3 "names:3: does not begin with #rrggbb, R,G,B or 0 to 65535, and a blank or comma before the name"
+	printf '7 2nd mug\n255 2 mugs\n' >names
+	"$BIN/mask-import" -q --names names view_1.png | jq -e '.object == "2 mugs"'
+}
+
+@test "what is neither a PNG nor labels that are read: what it is, and the way out" {
+	while IFS='|' read -r file text reason; do
+		echo "$text" >"$file"
+		says 3 "mask-import: $file: $reason" "$BIN/mask-import" -o none "$file"
+	done <<-'END'
+		a.xml|<annotations>|XML, as of CVAT or Pascal VOC: export the labels as COCO there
+		a.txt|0 0.1 0.2|text, as YOLO's labels: export the labels as COCO there
+		a.npy|x|an array of NumPy: save each thing's mask as a PNG, VIEW/NAME.png
+		a.json|[{"image":"a.jpg","label":[]}]|an export of Label Studio: export the labels as COCO there
+		a.json|{"description":"","tags":[],"size":{},"objects":[]}|labels of Supervisely: export the labels as COCO there
+	END
+	[ ! -e none ]
 }
 
 @test "pictures that are none, and outputs that are inputs" {
@@ -339,7 +365,7 @@ mask-import: warning: a.json: 2 shapes of type 'linestrip' are left out" ]
 	picture view_1.png '000000 000000 000000' '000000 000000 000000'
 	"$BIN/mask-import" a.json >made.jsonl
 	picture view_1.png '000000' '000000' '000000' '000000' '000000' '000000' '000000' '000000' '000000'
-	refuse "view_1.png is 1x9"
+	refuse "./view_1.png is 1x9"
 	jq --arg data "$(base64 -w0 held.png)" '.imageData = $data' a.json >b.json && mv b.json a.json
 	refuse "the picture in imageData is 6x2"
 	# a JPEG's header, of a picture that may be turned: 4 wide, 6 high
@@ -474,9 +500,9 @@ mask-import: warning: a.json: 2 shapes of type 'linestrip' are left out" ]
 	"$BIN/mask-import" tree | jq -r .object | sort -u >names
 	[ "$(cat names)" = cup ]
 	echo plate >tree/classes.txt
-	says 3 "mask-import: tree: has no masks VIEW/NAME.png of the names in classes.txt" "$BIN/mask-import" -o none tree
+	says 3 "mask-import: tree: has no masks VIEW/NAME.png of the names in classes.txt; give pictures of views, and labels, one by one" "$BIN/mask-import" -o none tree
 	mkdir empty
-	says 3 "mask-import: empty: has no masks VIEW/NAME.png" "$BIN/mask-import" -o none empty
+	says 3 "mask-import: empty: has no masks VIEW/NAME.png; give pictures of views, and labels, one by one" "$BIN/mask-import" -o none empty
 	rm tree/classes.txt
 	echo broken >tree/v2/cup.png
 	says_like 3 "mask-import: tree/v2/cup.png: " "$BIN/mask-import" -o none tree

@@ -62,7 +62,7 @@ refused() {
 		says 3 "gs-import: cameras.json: view 'b': its pose is not a rotation and a translation: is it mirrored, scaled or rounded to few digits?" import
 	done
 	printf '[%s,%s]' "$(camera3dgs)" "$(camera3dgs)" >cameras.json
-	says 3 "gs-import: cameras.json: two views have the name 'b'" import
+	says 3 "gs-import: cameras.json: two views are of 'b': take one out" import
 }
 
 @test "not such a file" {

@@ -114,7 +114,7 @@ bad_image() {
 	printf '1 1 0 0 0 0 0 2 3 b.jpg\n' >model/images.txt
 	says 3 "gs-import: model/images.txt: image 'b.jpg': no camera 3 in the model" import
 	printf '1 1 0 0 0 0 0 2 1 b.jpg\n\n2 1 0 0 0 0 0 2 1 b.jpg\n' >model/images.txt
-	says 3 "gs-import: model/images.txt: two views have the name 'b.jpg'" import
+	says 3 "gs-import: model/images.txt: two views are of 'b.jpg': take one out" import
 	printf '1 1 0 0 0 0 0 2 1 x/.png\n' >model/images.txt
 	says 3 "gs-import: model/images.txt: image 'x/.png' gives no view name" import
 }

@@ -82,11 +82,11 @@ static void faults(void)
 
 	make_views(&c, LIST("a.jpg", "b.jpg", "a.jpg"));
 	CHECK(views_finish(&c, "file", &e) && e.code == ERR_FORMAT &&
-			!strcmp(e.message, "file: two views have the name 'a.jpg'"),
+			!strcmp(e.message, "file: two views are of 'a.jpg': take one out"),
 		"%s", e.message);
 	cameras_free(&c);
 	make_views(&c, LIST("x/a.jpg", "x//a.jpg", "./x/a.jpg"));
-	CHECK(views_finish(&c, "file", &e) && !strcmp(e.message, "file: two views have the name 'x%2Fa.jpg'"),
+	CHECK(views_finish(&c, "file", &e) && !strcmp(e.message, "file: two views are of 'x/a.jpg': take one out"),
 		"%s", e.message);
 	cameras_free(&c);
 	make_views(&c, LIST("l/.jpg"));
