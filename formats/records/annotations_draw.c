@@ -16,7 +16,8 @@ enum { CIRCLE = 64 /* corners that stand for a circle */ };
 /* How far beside the picture a point may be that a person set at its edge: this share of its longer side. */
 static const double edge_share = 0.02;
 
-char *reading_view(const struct reading *r, const char *image, struct err *e)
+/* A picture's name as a view: without folders of either kind of slash, and without the ending. */
+static char *reading_view(const struct reading *r, const char *image, struct err *e)
 {
 	const char *base = strrchr(image, '\\');
 	SCOPED char *stem = mem_strdup(view_base(base ? base + 1 : image), e);

@@ -46,9 +46,6 @@ int reading_unite(struct reading *r, struct annotation *on, const struct rle *ma
 /* One more of a kind that is left out: "shapes of type 'line'". */
 int reading_leave_out(struct reading *r, const char *kind, struct err *e);
 
-/* A picture's name as a view: without folders of either kind of slash, and without the ending. */
-char *reading_view(const struct reading *r, const char *image, struct err *e);
-
 /* Notes the one picture of a file, whose path is as seen from the folder of `json`: its view, which stays the
  * reading's; NULL with *e. */
 const char *reading_picture(struct reading *r, const char *json, const char *image, struct err *e);

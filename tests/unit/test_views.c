@@ -86,7 +86,8 @@ static void faults(void)
 		"%s", e.message);
 	cameras_free(&c);
 	make_views(&c, LIST("x/a.jpg", "x//a.jpg", "./x/a.jpg"));
-	CHECK(views_finish(&c, "file", &e) && !strcmp(e.message, "file: two views are of 'x/a.jpg': take one out"),
+	CHECK(views_finish(&c, "file", &e) &&
+			!strcmp(e.message, "file: two views are of 'x/a.jpg': take one out"),
 		"%s", e.message);
 	cameras_free(&c);
 	make_views(&c, LIST("l/.jpg"));
