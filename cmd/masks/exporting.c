@@ -103,41 +103,17 @@ void exporting_free(struct exporting *x)
 	cameras_free(&x->cameras);
 }
 
-/* The part of a photograph's path that gives the view its name, so that mask-import finds it: the file, or as
- * many folders as tell it from another's. The file where none does. NULL with *e. */
-static const char *file_of(const char *image, const char *view, struct err *e)
-{
-	const char *from = view_base(image);
-
-	for (;;) {
-		SCOPED char *stem = mem_strdup(from, e), *whole = stem ? name_to_view(from, e) : NULL;
-		if (stem)
-			stem[view_stem(stem)] = 0;
-		SCOPED char *name = whole ? name_to_view(stem, e) : NULL;
-		const int is_out = !name, is_it = name && (!strcmp(name, view) || !strcmp(whole, view));
-		if (is_out || is_it)
-			return is_out ? NULL : from;
-		if (from == image)
-			return view_base(image);
-		do
-			from--;
-		while (from > image && from[-1] != '/');
-	}
-}
-
 /* The photograph of a view, as the scene has it; else the view's name as a PNG. */
 static int put_file_name(const struct exporting *x, struct jsontext *to, const char *view, struct err *e)
 {
 	char name[4096];
 	const struct camera *camera = cameras_find(&x->cameras, view);
-	const char *image = camera ? camera->image : NULL;
+	const char *image = camera ? camera->image : NULL, *part = name;
 
-	if (image && !(image = file_of(image, view, e)))
-		return -1;
-	if (!image)
-		snprintf(name, sizeof name, "%s.png", view);
-	jsontext_string(to, "file_name", image ? image : name);
-	return 0;
+	snprintf(name, sizeof name, "%s.png", view);
+	const int found = image ? view_part(image, view, &part, e) : 0;
+	jsontext_string(to, "file_name", image && !found ? view_base(image) : part);
+	return found < 0 ? -1 : 0;
 }
 
 /* left, top, width, height; 0 of an empty mask. */

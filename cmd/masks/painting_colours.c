@@ -61,22 +61,14 @@ static const struct painting_name *painting_names_find(const struct painting_nam
 	return NULL;
 }
 
-static int has_name(const struct painting_names *names, const char *name)
-{
-	for (size_t i = 0; i < names->n; i++)
-		if (!strcmp(names->items[i].name, name))
-			return 1;
-	return 0;
-}
-
 static int add_name(struct painting_names *names, const struct jsonl *j, struct err *e)
 {
-	char fault[NAME_FAULT], *text = name_trim(j->line);
+	char fault[NAME_FAULT];
 	uint32_t colour;
 
-	for (char *quote = text; (quote = strchr(quote, '"'));)
+	for (char *quote = j->line; (quote = strchr(quote, '"'));)
 		*quote = ' ';
-	text = name_trim(text);
+	char *text = name_trim(j->line);
 	if (!*text || (*text == '#' && strchr("# \t", text[1])))
 		return 0; /* a comment */
 	char *name = take_colour(text, &colour);
@@ -88,8 +80,9 @@ static int add_name(struct painting_names *names, const struct jsonl *j, struct 
 		return jsonl_err(j, e, "the name %s", reason);
 	if (painting_names_find(names, colour))
 		return jsonl_err(j, e, "its colour or number has a name already");
-	if (has_name(names, name))
-		return jsonl_err(j, e, "the name '%s' has a colour already", name);
+	for (size_t i = 0; i < names->n; i++)
+		if (!strcmp(names->items[i].name, name))
+			return jsonl_err(j, e, "the name '%s' has a colour already", name);
 	if (mem_grow(
 		    (void **)&names->items, &names->capacity, names->n + 1, sizeof *names->items, j->path, e))
 		return -1;
@@ -197,17 +190,16 @@ static int check_colours(
 {
 	const size_t pixels = (size_t)p->height * (size_t)p->width;
 	SCOPED uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
-	SCOPED size_t *ends = mem_alloc(pixels, sizeof *ends, p->path, e);
 	size_t covered = 0, moved = 0, colours = 0;
 	int is_grey = 1; /* black and white alone have names */
 
-	if (!sorted || !ends)
+	if (!sorted)
 		return -1;
 	memcpy(sorted, p->paint, pixels * sizeof *sorted);
 	qsort(sorted, pixels, sizeof *sorted, compare_u32);
 	for (size_t i = 0; i < names->n; i++)
 		is_grey = is_grey && (!names->items[i].colour || names->items[i].colour == 0xffffff);
-	for (size_t first = 0, end; first < pixels; first = ends[colours++] = end) {
+	for (size_t first = 0, end; first < pixels; first = end, colours++) {
 		for (end = first; end < pixels && sorted[end] == sorted[first];)
 			end++;
 		const uint32_t near = nearest(names, sorted[first], NEAR + 1);
@@ -223,9 +215,11 @@ static int check_colours(
 			p->path, colours);
 		return 0;
 	}
-	for (size_t i = 0; i < colours; i++) {
-		const double share = (double)(ends[i] - (i ? ends[i - 1] : 0)) / (double)pixels;
-		const uint32_t colour = sorted[ends[i] - 1];
+	for (size_t first = 0, end; first < pixels; first = end) {
+		for (end = first; end < pixels && sorted[end] == sorted[first];)
+			end++;
+		const double share = (double)(end - first) / (double)pixels;
+		const uint32_t colour = sorted[first];
 		if (share > unnamed_share && colour && colour != 0xffffff && colour != PNG_PAINT_NONE &&
 			!painting_names_find(names, colour))
 			report_warn(to,

@@ -4,27 +4,25 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/names.h"
-#include "base/number.h"
 #include "formats/records/masks.h"
 #include "geom/views.h"
 
 #include <math.h>
 #include <stdio.h>
 
-/* An id, a number or a text, as text; NULL where it is neither. */
-static const char *id_text(const cJSON *id, char text[NUMBER_SIZE])
+/* Whether ids are the same: texts, or numbers, which may be written as texts. */
+static int is_id(const cJSON *a, const cJSON *b)
 {
-	return cJSON_IsNumber(id) ? number_text(text, id->valuedouble) : cJSON_GetStringValue(id);
-}
+	const cJSON *ids[2] = {a, b};
+	double numbers[2];
 
-static int is_id(const cJSON *own, const cJSON *wanted, const char *id)
-{
-	char text[NUMBER_SIZE];
-
-	if (cJSON_IsNumber(own) && cJSON_IsNumber(wanted))
-		return own->valuedouble == wanted->valuedouble;
-	const char *other = id ? id_text(own, text) : NULL;
-	return other && !strcmp(other, id);
+	for (int i = 0; i < 2; i++) {
+		const char *text = cJSON_GetStringValue(ids[i]);
+		char *end = NULL;
+		numbers[i] = cJSON_IsNumber(ids[i]) ? ids[i]->valuedouble : text ? strtod(text, &end) : NAN;
+		numbers[i] = end && (end == text || *end) ? NAN : numbers[i];
+	}
+	return numbers[0] == numbers[1] || (cJSON_IsString(a) && cJSON_Compare(a, b, 1));
 }
 
 /* The item of a list whose "id" is that of the object's "KIND_id"; NULL with *e where none is, or two
@@ -32,23 +30,22 @@ static int is_id(const cJSON *own, const cJSON *wanted, const char *id)
 static const cJSON *with_id(const struct reading *r, const cJSON *root, const char *list, const cJSON *object,
 	const char *key, struct err *e)
 {
-	char text[NUMBER_SIZE];
-	const cJSON *item, *found = NULL, *items = json_get(root, list), *wanted = json_get(object, key);
-	const char *id = id_text(wanted, text);
+	const cJSON *item, *found = NULL, *items = json_get(root, list), *id = json_get(object, key);
+	SCOPED char *text = id ? cJSON_PrintUnformatted(id) : NULL;
 
 	cJSON_ArrayForEach(item, items)
 	{
-		if (!is_id(json_get(item, "id"), wanted, id))
+		if (!is_id(json_get(item, "id"), id))
 			continue;
 		if (found && !cJSON_Compare(found, item, 1)) {
-			err_file(e, r->where, "two of the file's %s have its '%s', %.80s", list, key, id);
+			err_file(e, r->where, "two of the file's %s have its '%s', %.80s", list, key, text);
 			return NULL;
 		}
 		found = found ? found : item;
 	}
 	if (!found)
 		err_file(e, r->where, "none of the file's %d %s has its '%s', %.80s: is the file whole?",
-			cJSON_GetArraySize(items), list, key, id ? id : "which is missing");
+			cJSON_GetArraySize(items), list, key, text ? text : "which is missing");
 	return found;
 }
 

@@ -238,10 +238,11 @@ int masks_check_shape(const struct mask *m, const char *of, int height, int widt
 }
 
 /* *at: the view of a scene, whose names (names) are these, that a mask is of by its name or by its
- * photograph's (view_is_called), which the mask then has; NAMES_NONE where there is none. */
+ * photograph's (view_part), which the mask then has; NAMES_NONE where there is none. */
 static int find_view(
 	struct mask *m, const struct names *names, const struct cameras *c, size_t *at, struct err *e)
 {
+	const char *part;
 	int is_so = 0;
 
 	*at = names_find(names, m->view);
@@ -250,7 +251,7 @@ static int find_view(
 	if (*at == NAMES_NONE && own)
 		is_so = (*at = names_find(names, own)) != NAMES_NONE;
 	for (size_t v = 0; v < c->n && *at == NAMES_NONE; v++)
-		if ((is_so = view_is_called(&c->views[v], m->view, e)) > 0)
+		if (c->views[v].source && (is_so = view_part(c->views[v].source, m->view, &part, e)) > 0)
 			*at = v;
 		else if (is_so < 0)
 			return -1;

@@ -37,7 +37,7 @@ int masks_check_refs(const struct masks *set, const char *path, char *const *ref
 	size_t sentences, struct err *e);
 
 /* views (n): the number of each record's view, which the record then names as the scene does
- * (view_is_called). Masks of views that the scene lacks are left out, with a warning; ERR_FORMAT where that
+ * (view_part). Masks of views that the scene lacks are left out, with a warning; ERR_FORMAT where that
  * leaves none, or a mask has not the shape of its view. With NULL (and no report) nothing is left out, and
  * masks of photographs that a lens distorts are not compared. */
 int masks_views(struct masks *set, long *lines, const char *path, const struct cameras *cameras,

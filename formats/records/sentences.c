@@ -1,6 +1,7 @@
 #include "formats/records/sentences.h"
 
 #include "base/mem.h"
+#include "base/path.h"
 #include "base/utf8.h"
 #include "formats/records/json.h"
 #include "formats/records/jsonl.h"
@@ -191,6 +192,8 @@ static int read_file(struct sentences *s, const char *path, int is_any, struct e
 		return -1;
 	const int json = is_any ? is_json(&j, e) : 1;
 	int bad = json < 0 ? -1 : json ? read_all(s, &j, e) : read_plain(s, &j, e);
+	if (!json && !bad && (path_ends(path, ".csv") || path_ends(path, ".tsv")))
+		bad = err_file(e, path, "a table: write a sentence on each line, or JSON Lines");
 	if (bad)
 		sentences_free(s);
 	return bad;

@@ -141,7 +141,7 @@ int plyfile_end(const struct plyfile *f, struct err *e)
 {
 	size_t at = f->at;
 
-	while (f->encoding == PLY_ASCII && at < f->map.len && isspace(f->map.data[at]))
+	while (at < f->map.len && (isspace(f->map.data[at]) || !f->map.data[at]))
 		at++;
 	if (at < f->map.len)
 		return err_file(

@@ -175,19 +175,24 @@ int views_finish(struct cameras *c, const char *path, struct err *e)
 	return bad ? -1 : 0;
 }
 
-int view_is_called(const struct camera *c, const char *name, struct err *e)
+int view_part(const char *image, const char *view, const char **part, struct err *e)
 {
-	int is_so = 0;
+	const char *from = view_base(image);
 
-	for (const char *from = c->source; from && !is_so; from = strchr(from, '/')) {
-		from += *from == '/';
-		SCOPED char *part = mem_strdup(from, e);
-		if (part)
-			part[view_stem(part)] = 0;
-		SCOPED char *called = part ? name_to_view(part, e) : NULL;
-		is_so = called ? !strcmp(called, name) : -1;
+	for (;;) {
+		SCOPED char *stem = mem_strdup(from, e), *whole = stem ? name_to_view(from, e) : NULL;
+		if (stem)
+			stem[view_stem(stem)] = 0;
+		SCOPED char *name = whole ? name_to_view(stem, e) : NULL;
+		*part = from;
+		if (!name || !strcmp(name, view) || !strcmp(whole, view))
+			return name ? 1 : -1;
+		if (from == image)
+			return 0;
+		do
+			from--;
+		while (from > image && from[-1] != '/');
 	}
-	return is_so;
 }
 
 int views_name(const char *const *images, size_t n, char **names, const char *path, struct err *e)

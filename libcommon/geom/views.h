@@ -26,9 +26,9 @@ char *view_image(const char *path, struct err *e);
  * as name_to_file writes it. Two of the same path are an error. `path` is for messages. */
 int views_finish(struct cameras *c, const char *path, struct err *e);
 
-/* 1 where a view is known by this name with some of the folders of its photograph, as views_name gives it
- * where other photographs share its file name; 0 where not; -1 with *e. */
-int view_is_called(const struct camera *c, const char *name, struct err *e);
+/* 1 where a photograph's path gives a view this name, with as many folders as tell it from others, as
+ * views_name does: *part is that end of the path; 0 where not; -1 with *e. */
+int view_part(const char *image, const char *view, const char **part, struct err *e);
 
 /* The names (n) of views that views_finish gives to images of these paths, in their order: free() each.
  * Returns 0, or -1 with *e and no names. */

@@ -196,6 +196,8 @@ Try 'text-encode --help'." env -u XDG_CACHE_HOME -u HOME "$BIN/text-encode" -o t
 	says 3 'text-encode: latin:2: not UTF-8 at byte 4' "$BIN/text-encode" --model model -o none latin
 	printf 'cup\nc\0p\n' >nul
 	says 3 'text-encode: nul:2: a NUL byte at column 2' "$BIN/text-encode" --model model -o none nul
+	printf 'object,text\ncup,the red cup\n' >table.csv
+	says 3 'text-encode: table.csv: a table: write a sentence on each line, or JSON Lines' "$BIN/text-encode" --model model -o none table.csv
 	# what begins as JSON may is JSON
 	for first in '[' ' {' '"cup"' $'\xef\xbb\xbf{'; do
 		echo "$first" >odd

@@ -137,6 +137,10 @@ header() {
 	size=$(wc -c <s.ply)
 	echo '1' >>s.ply
 	refused "2 bytes after the last element, from offset $size"
+	# but a line's end, or zeros
+	splats_ply s.ply
+	printf '\n\0' >>s.ply
+	import s.ply
 }
 
 @test "blank space at the end of ascii, comments and CR LF are fine" {
