@@ -155,9 +155,8 @@ static int put_name(
 	return painting_put(&mask, w, p->path, out, e);
 }
 
-/* Colours that differ by at most this in each channel are near; a map of labels has at most so many colours.
- */
-enum { NEAR = 24, HALF = 128, LABELS_MOST = 64 };
+/* Colours that differ by at most this in each channel are near; so few near ones are labels without names. */
+enum { NEAR = 24, HALF = 128, FEW = 24 };
 
 /* A picture that was saved with loss is of nothing but such colours, to this share, as a photograph is not.
  */
@@ -190,23 +189,28 @@ static int check_colours(
 {
 	const size_t pixels = (size_t)p->height * (size_t)p->width;
 	SCOPED uint32_t *sorted = mem_alloc(pixels, sizeof *sorted, p->path, e);
-	size_t covered = 0, moved = 0, colours = 0;
-	int is_grey = 1; /* black and white alone have names */
+	size_t covered = 0, moved = 0, colours = 0, greys = 0, numbers = 0;
 
 	if (!sorted)
 		return -1;
 	memcpy(sorted, p->paint, pixels * sizeof *sorted);
 	qsort(sorted, pixels, sizeof *sorted, compare_u32);
-	for (size_t i = 0; i < names->n; i++)
-		is_grey = is_grey && (!names->items[i].colour || names->items[i].colour == 0xffffff);
-	for (size_t first = 0, end; first < pixels; first = end, colours++) {
+	for (size_t i = 0; i < names->n; i++) {
+		const uint32_t colour = names->items[i].colour;
+		greys += !colour || colour == 0xffffff;
+		numbers += colour && colour < 0xffffff && colour == 0x010101 * (colour & 255);
+	}
+	for (size_t first = 0, end; first < pixels; first = end) {
 		for (end = first; end < pixels && sorted[end] == sorted[first];)
 			end++;
 		const uint32_t near = nearest(names, sorted[first], NEAR + 1);
+		const int is_moved = near && near != PNG_PAINT_NONE && near != sorted[first];
 		covered += near != PNG_PAINT_NONE ? end - first : 0;
-		moved += near && near != PNG_PAINT_NONE && near != sorted[first] ? end - first : 0;
+		moved += is_moved ? end - first : 0;
+		colours += is_moved;
 	}
-	if ((is_grey || colours > LABELS_MOST) && (double)covered >= lossy_share * (double)pixels &&
+	const int is_grey = greys == names->n; /* black and white alone have names */
+	if (!numbers && (is_grey || colours > FEW) && (double)covered >= lossy_share * (double)pixels &&
 		(double)moved > unnamed_share * (double)pixels) {
 		for (size_t i = 0; i < pixels; i++)
 			p->paint[i] = nearest(names, p->paint[i], is_grey ? HALF + 1 : NEAR + 1);

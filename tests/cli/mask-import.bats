@@ -260,7 +260,7 @@ made() {
 	done
 	picture lossy.png "${rows[@]}"
 	printf '%s\n' '#e6194b cup' >names
-	says 0 "mask-import: warning: lossy.png: 80 colours near those that have names, as of a JPEG or a soft brush: each pixel is taken for the nearest; save paintings without loss" \
+	says 0 "mask-import: warning: lossy.png: 31 colours near those that have names, as of a JPEG or a soft brush: each pixel is taken for the nearest; save paintings without loss" \
 		"$BIN/mask-import" --names names -o made.jsonl lossy.png
 	"$BIN/mask-export" made.jsonl | jq -e '.annotations | length == 1 and .[0].bbox == [0, 0, 4, 8] and .[0].area == 32'
 	picture labels.png "${rows[@]:0:6}"
