@@ -11,10 +11,17 @@ const int closed_count = sizeof closed_words / sizeof *closed_words;
 
 int closed_find(const char *text)
 {
-	for (int i = 0; i < closed_count; i++)
-		if (closed_words[i].text[0] == text[0] && !strcmp(closed_words[i].text, text))
-			return i;
-	return -1;
+	/* the first word of each letter, and the next of the same, from 1 on */
+	static _Thread_local short first[256], next[CLOSED_MOST];
+
+	for (int i = closed_count; i-- && !next[0];) {
+		next[i] = first[(unsigned char)*closed_words[i].text];
+		first[(unsigned char)*closed_words[i].text] = (short)(i + 1);
+	}
+	int i = first[(unsigned char)*text];
+	while (i && strcmp(closed_words[i - 1].text, text) != 0)
+		i = next[i - 1];
+	return i - 1;
 }
 
 int closed_is(const char *text, enum closed_class class)

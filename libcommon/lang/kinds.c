@@ -18,19 +18,34 @@ static const char *first_line(void)
 	return p;
 }
 
-/* In which field of nouns of a line a word is, from 1 on; 0: in none. */
-static int has(const char *line, const char *word)
-{
-	int field = 0;
+/* A word in the table: its line, the number of that, and in which field of nouns it is, from 1 on. */
+struct found {
+	const char *line, *at;
+	int number, field;
+};
 
-	for (const char *p = strchr(line, '\t'); *p && *p != '\n';) {
-		const char *w = word;
-		field += *p == '\t';
-		for (p++; *w && *p != ' ' && (*w == *p || (*w == ' ' && *p == '_')); p++)
-			w++;
-		if (!*w && strchr(" \t\n", *p))
-			return field;
-		p += strcspn(p, " \t\n");
+/* The first place of a word in the next line that has it; *f is zeroed at first. */
+static int find_next(struct found *f, const char *word)
+{
+	char key[KINDS_LENGTH];
+	size_t n = 0;
+
+	if (!f->line)
+		f->line = f->at = first_line();
+	else
+		f->at += strcspn(f->at, "\n");
+	for (; word[n] && n + 1 < sizeof key; n++)
+		key[n] = word[n] == ' ' ? '_' : word[n];
+	key[n] = 0;
+	while (n && !word[n] && (f->at = strstr(f->at, key))) {
+		for (const char *end; (end = strchr(f->line, '\n')) && end < f->at; f->number++)
+			f->line = end + 1;
+		f->field = 0;
+		for (const char *p = f->line; p < f->at; p++)
+			f->field += *p == '\t';
+		if (f->field && strchr(" \t", f->at[-1]) && strchr(" \t\n", f->at[n]))
+			return 1;
+		f->at++;
 	}
 	return 0;
 }
@@ -57,18 +72,15 @@ int kinds_next(long *at, char noun[KINDS_LENGTH])
 
 int kinds_have(const char *lemma)
 {
-	for (const char *p = first_line(); *p; p = next_line(p))
-		if (has(p, lemma))
-			return 1;
-	return 0;
+	return find_next(&(struct found){0}, lemma);
 }
 
 int kinds_listed(const char *list, const char *lemma)
 {
 	const size_t length = strlen(list);
 
-	for (const char *p = first_line(); *p; p = next_line(p))
-		if (!strncmp(p, list, length) && p[length] == '\t' && has(p, lemma))
+	for (struct found f = {0}; find_next(&f, lemma);)
+		if (!strncmp(f.line, list, length) && f.line[length] == '\t')
 			return 1;
 	return 0;
 }
@@ -77,23 +89,20 @@ const char *kinds_has(const char *lemma, size_t *length)
 {
 	static const char mark[] = "has:";
 
-	for (const char *p = first_line(); *p; p = next_line(p))
-		if (!strncmp(p, mark, sizeof mark - 1) && has(p, lemma)) {
-			p += sizeof mark - 1;
-			*length = strcspn(p, "\t");
-			return p;
+	for (struct found f = {0}; find_next(&f, lemma);)
+		if (!strncmp(f.line, mark, sizeof mark - 1)) {
+			*length = strcspn(f.line + sizeof mark - 1, "\t");
+			return f.line + sizeof mark - 1;
 		}
 	return NULL;
 }
 
 void kinds_find(struct kinds_lines *to, const char *lemma)
 {
-	int line = 0;
-
 	*to = (struct kinds_lines){{{0}}};
-	for (const char *p = first_line(); *p && line < KINDS_LINES; p = next_line(p), line++)
-		for (int f = has(p, lemma), i = 0; f && i < KINDS_FIELDS; i++)
-			to->bits[i][line / 64] |= (uint64_t)(!i || i == f) << line % 64;
+	for (struct found f = {0}; find_next(&f, lemma) && f.number < KINDS_LINES;)
+		for (int i = 0; i < KINDS_FIELDS; i++)
+			to->bits[i][f.number / 64] |= (uint64_t)(!i || i == f.field) << f.number % 64;
 }
 
 double kinds_share(const struct kinds_lines *word, const struct kinds_lines *known)

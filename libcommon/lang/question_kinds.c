@@ -405,14 +405,17 @@ static int find_kind(struct question_asked *q, const char *text, int way)
 		from.idle_before++;
 	for (from.idle_after = t.n; from.idle_after && is_idle(&t, from.idle_after - 1);)
 		from.idle_after--;
+	int begins[TOKENS_MOST], n = 0; /* where a question may begin */
+	for (int at = 0; at < t.n; at++)
+		if (at <= from.idle_before || is_break(&t, text, at))
+			begins[n++] = at;
 	for (size_t row = 0; row < sizeof rows / sizeof *rows; row++)
-		for (int at = 0; at < t.n; at++) {
+		for (int i = 0; i < n; i++) {
 			struct matching first = from, m = from;
 			m.skip = way;
-			if ((at > from.idle_before && !is_break(&t, text, at)) ||
-				!match(&first, rows[row].said, at))
+			if (!match(&first, rows[row].said, begins[i]))
 				continue;
-			if (!match(&m, rows[row].said, at))
+			if (!match(&m, rows[row].said, begins[i]))
 				return 0;
 			take(q, row, &m, text);
 			return 1;
