@@ -8,26 +8,50 @@ static const struct box *box_of(const struct answer_told *t, size_t object)
 	return &t->asking->model.extents[object].turned;
 }
 
-/* How high a thing is above what the lowest stands on: its foot, or the top of what stands there. */
-static double above_ground(const struct answer_told *t, size_t object)
+/* The part of a thing's height that may be hidden at its foot, of what is seen of it. */
+static const double hidden = 0.4;
+
+static double foot_of(const struct answer_told *t, size_t object)
+{
+	return box_of(t, object)->centre[2] - box_of(t, object)->half[2];
+}
+
+/* What all stand on, *ground, which the lowest foot tells; and where a thing's own foot is: on that, or on
+ * the top of what is below it, as what is close to it hides the lowest Gaussians. */
+static double find_foot(const struct answer_told *t, size_t object, double *ground)
 {
 	const struct box *own = box_of(t, object);
-	const double foot = own->centre[2] - own->half[2];
-	double ground = foot;
+	const double foot = foot_of(t, object);
+	double under = -INFINITY;
 
-	for (size_t o = 0; o < t->asking->model.lifted.objects; o++)
-		if (t->asking->model.extents[o].n)
-			ground = fmin(ground, box_of(t, o)->centre[2] - box_of(t, o)->half[2]);
-	return foot - ground > own->half[2] / 2 ? foot - ground : 2 * own->half[2];
+	*ground = foot;
+	for (size_t o = 0; o < t->asking->model.lifted.objects; o++) {
+		const struct box *b = box_of(t, o);
+		const double top = b->centre[2] + b->half[2];
+		if (!t->asking->model.extents[o].n)
+			continue;
+		*ground = fmin(*ground, foot_of(t, o));
+		if (o != object && top < own->centre[2] &&
+			hypot(own->centre[0] - b->centre[0], own->centre[1] - b->centre[1]) <
+				fmax(b->half[0], b->half[1]))
+			under = fmax(under, top);
+	}
+	under = fmin(fmax(under, *ground), foot);
+	return foot - under < 2 * hidden * own->half[2] ? under : foot;
 }
 
 double answering_length(const struct answer_told *t, size_t object, enum question_kind kind)
 {
-	const double *half = box_of(t, object)->half;
+	const struct box *own = box_of(t, object);
+	double ground;
+	const double foot = find_foot(t, object, &ground), height = own->centre[2] + own->half[2] - foot;
 
-	if (kind == QUESTION_HEIGHT)
-		return t->asked.relation == PARSE_ABOVE ? above_ground(t, object) : 2 * half[2];
-	return 2 * (kind == QUESTION_WIDTH ? fmax(half[0], half[1]) : cbrt(half[0] * half[1] * half[2]));
+	if (kind == QUESTION_HEIGHT) /* above the table, of what stands on something else */
+		return t->asked.relation == PARSE_ABOVE && foot - ground > height / 4 ? foot - ground
+										      : height;
+	if (kind == QUESTION_WIDTH)
+		return 2 * fmax(own->half[0], own->half[1]);
+	return cbrt(4 * own->half[0] * own->half[1] * height);
 }
 
 const char *answering_length_name(enum question_kind kind)
@@ -64,7 +88,8 @@ void answering_say_size(struct answer_told *t)
 	}
 	if (t->asked.kind == QUESTION_SIZE)
 		answering_say(t, "%s x %s x %s high", answer_length(a, 2 * half[0], text[0]),
-			answer_length(a, 2 * half[1], text[1]), answer_length(a, 2 * half[2], text[2]));
+			answer_length(a, 2 * half[1], text[1]),
+			answer_length(a, answering_length(t, thing, QUESTION_HEIGHT), text[2]));
 	else
 		answering_say(t, "%s %s", answer_length(a, own, text[0]),
 			t->asked.kind == QUESTION_HEIGHT ? "high" : "wide");
