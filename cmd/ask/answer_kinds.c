@@ -11,6 +11,8 @@
 static const double as_likely = 0.6;
 /* A part of a question that holds of a thing, rather than not. */
 static const double holds = 0.5;
+/* The same of what touches, or hardly does. */
+static const double is_at = 0.35;
 /* The same by what sentences say, where what it is told by is nothing here. */
 static const double is_said = 0.6;
 /* One thing rather than another, and rather than all that fit. */
@@ -202,6 +204,18 @@ static int answer_all(const char *question, struct asking_answer *found, struct 
 	return 0;
 }
 
+/* Nothing is on, in or under a thing, where that hardly holds of anything. */
+static void drop_apart(const struct answer_told *t, struct asking_answer *found)
+{
+	static const unsigned contact = 1U << PARSE_ON | 1U << PARSE_INSIDE | 1U << PARSE_BELOW;
+	size_t k = 0;
+
+	while (k < found->count && found->holds[found->things[k]] < is_at)
+		k++;
+	if (k == found->count && t->asked.relation >= 0 && contact >> t->asked.relation & 1)
+		found->count = 0;
+}
+
 /* What stands in a relation: where no one thing is likely to be meant alone, all that does. Of what lies to
  * one side of a thing, one is told sooner. */
 static int answer_set(struct answer_told *t, struct asking_answer *found, struct asking *a,
@@ -214,6 +228,7 @@ static int answer_set(struct answer_told *t, struct asking_answer *found, struct
 	if (asking_ask(a, t->asked.text[0], 0, found, to, e))
 		return -1;
 	drop_at_nothing(t, found);
+	drop_apart(t, found);
 	if (found->count != 1 || found->is_anchor_unknown || t->asked.most ||
 		found->probability[found->things[0]] >= (is_side ? sure : sure_alone))
 		return 0;

@@ -17,7 +17,7 @@ static const double on_is_above = 0.6;
 /* How high above the others' undersides what rests on nothing is half on the table. */
 static const double above_all = 0.6, above_soft = 0.1;
 /* How wrong it is to say of a thing on another that it is on the table. */
-static const double on_the_rest = 0.5;
+static const double on_the_rest = 0.55;
 /* A gap that is none, as the undersides of things are seen badly; the gap at which "next to", and the
  * distance at which "far from" is half true. */
 static const double touching = 0.05, next_to = 0.3, far_from = 0.8;
@@ -85,11 +85,12 @@ static double near(const struct arrangement *a, const struct arranged *p, const 
 	return 1 / (1 + x * x);
 }
 
-/* p is in q: on top of it in plan, and not above its rim. */
+/* p is in q: on top of it in plan, not above its rim, and not what q stands on. */
 static double inside(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
 {
 	return logistic((feet_overlap(p, q) - 0.6) / 0.1) *
 	       logistic((q->high[2] - p->low[2]) / (0.03 * a->spacing)) *
+	       logistic((p->centre[2] - q->centre[2]) / (0.02 * a->spacing) + 2) *
 	       logistic((arranged_bulk(a, q) - arranged_bulk(a, p)) / 0.1);
 }
 
