@@ -11,6 +11,8 @@
 static const double as_likely = 0.6;
 /* A part of a question that holds of a thing, rather than not. */
 static const double holds = 0.5;
+/* The same of what is counted: what stands on another thing is on the table, if not directly. */
+static const double nearly_holds = 0.45;
 /* The same of what touches, or hardly does. */
 static const double is_at = 0.35;
 /* The same by what sentences say, where what it is told by is nothing here. */
@@ -121,12 +123,12 @@ static void drop_at_nothing(const struct answer_told *t, struct asking_answer *f
 }
 
 /* Only what the question surely holds of, if anything: "is anything on the box?" asks that. */
-static void keep_holding(struct asking_answer *a, int is_number)
+static void keep_holding(struct asking_answer *a, int is_number, double least)
 {
 	size_t n = 0;
 
 	for (size_t k = 0; k < a->count; k++)
-		if (a->holds[a->things[k]] >= holds || a->is_by_purpose)
+		if (a->holds[a->things[k]] >= least || a->is_by_purpose)
 			a->things[n++] = a->things[k];
 	a->count = n || !is_number ? n : a->count;
 }
@@ -136,7 +138,7 @@ int answering_all(const struct answer_told *t, const char *phrase, struct asking
 {
 	if (asking_ask(a, phrase, 1, found, to, e))
 		return -1;
-	keep_holding(found, 1);
+	keep_holding(found, 1, strstr(phrase, "directly") || strstr(phrase, "itself") ? holds : nearly_holds);
 	drop_at_nothing(t, found);
 	return 0;
 }
@@ -357,7 +359,7 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 	if (find_things(t, found, a, to, e))
 		return -1;
 	if (t->asked.kind == QUESTION_THERE) {
-		keep_holding(found, 0);
+		keep_holding(found, 0, holds);
 		drop_at_nothing(t, found);
 	}
 	if (t->asked.kind == QUESTION_THERE)

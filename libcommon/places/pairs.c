@@ -16,6 +16,8 @@ static const double low_is_near = 0.7;
 static const double on_is_above = 0.6;
 /* How high above the others' undersides what rests on nothing is half on the table. */
 static const double above_all = 0.6, above_soft = 0.1;
+/* How true it is to say of what a thing stands on that it is in that. */
+static const double upside_down = 0.2;
 /* How wrong it is to say of a thing on another that it is on the table. */
 static const double on_the_rest = 0.55;
 /* A gap that is none, as the undersides of things are seen badly; the gap at which "next to", and the
@@ -90,7 +92,8 @@ static double inside(const struct arrangement *a, const struct arranged *p, cons
 {
 	return logistic((feet_overlap(p, q) - 0.6) / 0.1) *
 	       logistic((q->high[2] - p->low[2]) / (0.03 * a->spacing)) *
-	       logistic((p->centre[2] - q->centre[2]) / (0.02 * a->spacing) + 2) *
+	       (upside_down + (1 - upside_down) *
+				      logistic((p->centre[2] - q->centre[2]) / (0.02 * a->spacing) + 2)) *
 	       logistic((arranged_bulk(a, q) - arranged_bulk(a, p)) / 0.1);
 }
 
