@@ -11,7 +11,7 @@
 static const double as_likely = 0.6;
 /* A part of a question that holds of a thing, rather than not. */
 static const double holds = 0.5;
-/* The same of what is counted: what stands on another thing is on the table, if not directly. */
+/* The same of what is counted or there: what stands on another thing is on the table, if not directly. */
 static const double nearly_holds = 0.45;
 /* The same of what touches, or hardly does. */
 static const double is_at = 0.35;
@@ -123,8 +123,9 @@ static void drop_at_nothing(const struct answer_told *t, struct asking_answer *f
 }
 
 /* Only what the question surely holds of, if anything: "is anything on the box?" asks that. */
-static void keep_holding(struct asking_answer *a, int is_number, double least)
+static void keep_holding(struct asking_answer *a, int is_number, const char *phrase)
 {
+	const double least = strstr(phrase, "directly") || strstr(phrase, "itself") ? holds : nearly_holds;
 	size_t n = 0;
 
 	for (size_t k = 0; k < a->count; k++)
@@ -138,7 +139,7 @@ int answering_all(const struct answer_told *t, const char *phrase, struct asking
 {
 	if (asking_ask(a, phrase, 1, found, to, e))
 		return -1;
-	keep_holding(found, 1, strstr(phrase, "directly") || strstr(phrase, "itself") ? holds : nearly_holds);
+	keep_holding(found, 1, phrase);
 	drop_at_nothing(t, found);
 	return 0;
 }
@@ -359,7 +360,7 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 	if (find_things(t, found, a, to, e))
 		return -1;
 	if (t->asked.kind == QUESTION_THERE) {
-		keep_holding(found, 0, holds);
+		keep_holding(found, 0, t->asked.text[0]);
 		drop_at_nothing(t, found);
 	}
 	if (t->asked.kind == QUESTION_THERE)

@@ -2,6 +2,7 @@
 #include "cmd/ask/reply.h"
 
 #include "lang/colours.h"
+#include "lang/finish.h"
 
 #include <math.h>
 #include <string.h>
@@ -75,11 +76,34 @@ int answer_is_coloured(const struct answer_told *t, size_t thing, int colour)
 	return is;
 }
 
+/* The pattern that sentences say of a thing, or else its Gaussians show. */
+static const char *find_pattern(const struct answer_told *t, size_t thing)
+{
+	static const char *const patterns[] = {
+		[FINISH_STRIPES] = "striped", [FINISH_SPOTS] = "spotted", [FINISH_PLAIN] = "plain"};
+	const struct vocabulary *v = t->answer->words;
+	const struct surface *s = &t->answer->places->objects[thing].surface;
+	int most = FINISH_STRIPES;
+
+	for (size_t i = 0; i < v->n; i++) {
+		const int is = finish_of(v->items[i].lemma);
+		if (v->items[i].object == thing && is >= 0 && is <= FINISH_PLAIN)
+			return patterns[is];
+	}
+	for (int k = FINISH_SPOTS; k <= FINISH_PLAIN; k++)
+		most = surface_fits(s, k) > surface_fits(s, most) ? k : most;
+	return patterns[most];
+}
+
 /* What else sentences say of a thing. */
 static void say_looks(const struct answer_told *t, size_t thing, struct parse_words *to)
 {
 	const struct vocabulary *v = t->answer->words;
 
+	if (strstr(t->question, "pattern")) {
+		parse_words_add(to, find_pattern(t, thing));
+		return;
+	}
 	for (size_t i = 0; i < v->n; i++)
 		if (v->items[i].object == thing && v->items[i].role == VOCABULARY_ATTRIBUTE &&
 			colour_word(v->items[i].lemma) < 0 && !strstr(to->to, v->items[i].lemma)) {

@@ -30,8 +30,9 @@ static int is_kept(const struct meaning *m, const struct meaning_part *part)
 
 	if (part->phrase || part->kind == MEANING_NOUN)
 		return 0;
-	if (part->kind == MEANING_ATTRIBUTE)
-		return is_before_generic(p, part->index);
+	if (part->kind == MEANING_ATTRIBUTE) /* "everything shiny" */
+		return is_before_generic(p, part->index) ||
+		       (parse_word_is(p, part->index - 1, "everything") && part->index + 1 == p->word_count);
 	if (part->kind != MEANING_CLAUSE)
 		return 1;
 	const struct parse_clause *c = &p->clauses[part->index];
