@@ -5,7 +5,6 @@
 #include "base/mem.h"
 #include "base/name.h"
 #include "base/names.h"
-#include "base/path.h"
 #include "formats/images/png.h"
 #include "formats/records/jsonl.h"
 #include "geom/views.h"
@@ -115,13 +114,10 @@ static const double unnamed_share = 0.001;
  * names of masks have before it. */
 static char *view_of(const char *path, struct err *e)
 {
-	int length;
-	const char *last = path_last(path, &length);
-	SCOPED char *stem = mem_strdup(last, e);
+	SCOPED char *stem = mem_strdup(view_base(path), e);
 
 	if (!stem)
 		return NULL;
-	stem[length] = 0;
 	char *dot = strrchr(stem, '.');
 	if (dot && dot > stem)
 		*dot = 0;
