@@ -118,11 +118,19 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 	[ "$(kind "is the $(grep -vxF "$larger" things | grep -xF -e "$a" -e "$b") larger than the $larger?" .yes)" = false ]
 	says 1 "nothing here is that: the sofa: nothing here is known as 'sofa'" ask run "which is larger, the sofa or the $a?"
 	[ "$(kind "the $a" .kind)" = which ]
+	# yes and no of one thing, and which of two it is
+	other=$(grep -vxF "$larger" things | grep -xF -e "$a" -e "$b")
+	[ "$(kind "is the $other larger or smaller than the $larger?" .value)" = "smaller than the $larger" ]
+	[ "$(kind "is the $a the only thing here?" .yes)" = false ]
+	[ "$(kind "is there nothing on the sofa?" .yes)" = true ]
+	[ "$(kind "is there only one sofa?" .yes)" = false ]
+	[ "$(kind "which is larger, the $a or the $b?" '.value | split(",")[0]')" = "$(kind "what is the size difference between the $a and the $b?" '.value | split(",")[0]')" ]
 }
 
 @test "a conversation: words that point back, until a blank line" {
 	a=$(sed -n 1p things) b=$(sed -n 2p things)
 	printf '%s\n' "how tall is the $a?" "how wide is it" "and the $b?" "where is it?" "no, the other one" "" "where is it?" | ask --json run >said || [ $? = 1 ]
+	printf '%s\n' "how tall is the $a?" "and how wide?" | ask --json run | jq -se '.[1].understood | startswith("how wide is the")'
 	jq -r '[.kind, .understood // "", .things[0].name // ""] | join("|")' said >lines
 	sed -i 's/|[^|]*$/|/;5s/.*/other/' lines
 	printf '%s\n' "height||" "width|how wide is the $a|" "width|how wide is the $b|" "which|where is the $b?|" other "which||" | diff - lines
