@@ -30,6 +30,8 @@ TOOLS := $(patsubst cmd/%.c,%,$(wildcard cmd/*.c))
 SOURCES := $(wildcard libcommon/*/*.c formats/*/*.c cmd/*/*.c)
 OBJECTS := $(SOURCES:%.c=$(BUILD)/obj/%.o)
 LIBRARY := $(BUILD)/librefersplat.a
+# What spends no time in loops may be compiled with other options, to be compiled sooner.
+$(filter $(patsubst %,$(BUILD)/obj/%/%,cmd formats $(addprefix libcommon/,answer ask cli places score synth talk)),$(OBJECTS)): override CFLAGS += $(COLD)
 BINARIES := $(TOOLS:%=$(BUILD)/bin/%)
 COMPLETIONS := $(TOOLS:%=$(BUILD)/completion/bash/%) $(TOOLS:%=$(BUILD)/completion/zsh/_%)
 # librefersplat, as other programs link it: $(LIBRARY) has all that the tools use.
@@ -60,7 +62,7 @@ BERT ?= $(ENCODER_CACHE)
 # By clang, so that the sanitizers are a second compiler too.
 SANITIZE := -fsanitize=address,undefined -fno-sanitize-recover=all
 ASAN_BUILD = $(MAKE) --no-print-directory $(PARALLEL) -s BUILD=build-asan CC=clang CFLAGS="-O1 -g -fno-omit-frame-pointer $(SANITIZE) -D__SANITIZE_ADDRESS__" \
-	WERROR="-Werror -Wno-unknown-pragmas -Wno-pass-failed" tools
+	COLD=-O0 LDFLAGS="$(if $(shell command -v ld.lld),-fuse-ld=lld)" WERROR="-Werror -Wno-unknown-pragmas -Wno-pass-failed" tools
 
 # gcc has omp.h where clang's own OpenMP is not installed.
 CLANG_FLAGS = -idirafter $$(gcc -print-file-name=include)
@@ -187,8 +189,8 @@ $(BUILD)/fuzz/%: $(BUILD)/obj/tests/fuzz/%.o $(BUILD)/obj/tests/fuzz/driver.o $(
 # Changes only when the commands do, and then everything is older than it.
 $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	@printf '%s\n' '$(subst ','\'',$(COMPILE_TEST) / $(LINK))' | cmp -s - $@ || \
-		printf '%s\n' '$(subst ','\'',$(COMPILE_TEST) / $(LINK))' >$@
+	@printf '%s\n' '$(subst ','\'',$(COMPILE_TEST) / $(COLD) / $(LINK))' | cmp -s - $@ || \
+		printf '%s\n' '$(subst ','\'',$(COMPILE_TEST) / $(COLD) / $(LINK))' >$@
 
 # One line in place of a wall of errors where a library's header is not there.
 $(BUILD)/headers:

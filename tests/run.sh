@@ -2,7 +2,7 @@
 # Runs the unit tests and fuzz loops built in BUILD and every bats file, JOBS at a time, and goes on after a failure.
 # usage: tests/run.sh BUILD JOBS [FILTER]; FILTER is a part of the wanted test files' names. SKIP=REGEX leaves files out.
 # Of tests/release those run whose parts changed (tests/changed.sh); all of them with RELEASE=1.
-# Prints a line for each test file and for each failed test, and at last "N passed, N failed". What the tests printed is
+# Prints a line for each test file, with its processor seconds, and for each failed test, and at last "N passed, N failed". What the tests printed is
 # in BUILD/test/NAME.log. The status is 0 only when something ran and nothing failed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -22,7 +22,7 @@ export limit
 
 # Runs one test file; leaves "passed failed" in NAME.count and what to print in NAME.lines.
 run_one() {
-	local file=$1 name=${1#tests/} passed=0 failed=0 status log started=$SECONDS
+	local file=$1 name=${1#tests/} passed=0 failed=0 status log
 	name=${name%.*}
 	log=$logs/${name//\//.}.log
 	case $file in
@@ -48,7 +48,9 @@ run_one() {
 		echo "FAILED $name: exit status $status, see $log" >>"$log.lines"
 	fi
 	echo "$passed $failed" >"$log.count"
-	printf '%-40s %4d passed, %d failed, %d s\n' "$name" "$passed" "$failed" $((SECONDS - started))
+	times >"$log.times" # in a pipe they would be those of another shell
+	printf '%-40s %4d passed, %d failed, %d s\n' "$name" "$passed" "$failed" \
+		"$(awk 'NR == 2 { gsub(/[ms]/, " "); printf "%.0f", 60 * ($1 + $3) + $2 + $4 }' "$log.times")"
 	cat "$log.lines"
 }
 export -f run_one

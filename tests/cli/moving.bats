@@ -189,7 +189,7 @@ lifted() {
 	"$BIN/refer-render" -q --time 0 --split all --scene moves/lifted/scene --text moves/text.safetensors --model moves/lifted/model.safetensors -o first.jsonl
 	later() { "$BIN/miou-score" --json --truth <(jq -c 'select(.time == 1)' moves/truth.jsonl) <(jq -c 'select(.ref | test("^motion-plain"))' "$1") 2>/dev/null | jq .miou; }
 	jq -n --argjson now "$(later moves/lifted/masks.jsonl)" --argjson first "$(later first.jsonl)" '$now > $first + 0.1' | grep -x true
-	for threads in 1 2 7; do
+	for threads in 1 7; do
 		OMP_NUM_THREADS=$threads lifted moves again
 		for file in scene/motion.safetensors weights model.safetensors masks.jsonl; do
 			diff -r "moves/lifted/$file" "again/$file"

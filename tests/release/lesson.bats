@@ -24,22 +24,29 @@ follow() {
 		bash -eu "$lesson" >../said 2>../err </dev/null) || { tail -n 5 said err; return 1; }
 }
 
-@test "every command runs, and leaves what the lesson says" {
-	[ "$(grep -c '^[a-z]' "$lesson")" -ge 18 ]
-	# a tiny encoder: its answers are nothing to go by, and one that it refuses is no mistake here
-	sed -i 's/^\(refer-ask .*"\)$/\1 || [ $? = 1 ]/; s/^\("how far.*"\)$/\1 || [ $? = 1 ]/' "$lesson"
-	sed -i 's/^refer-ask -o books.png.*/& ; touch books.png/' "$lesson"
-	follow "$(cd "$BATS_TEST_DIRNAME/../golden/bert" && pwd)"
-	for file in tea/overlays books.png labelled.ply objects labels.jsonl mug.sog; do [ -e "here/$file" ]; done
+# What the lesson leaves in the folder here.
+left() {
+	for file in tea/overlays books.png labelled.ply objects labels.jsonl mug.sog; do [ -e "here/$file" ] || { echo "no $file"; return 1; }; done
 	[ "$(wc -l <here/labels.jsonl)" = 13 ]
 	[ "$(ls here/objects | wc -l)" = 13 ]
 	grep -qE '^mug\.sog: ok: sog, [1-9][0-9]+ gaussians' said
 	grep -qE '^mIoU +[0-9.]+ %$' said
 }
 
+@test "every command runs, and leaves what the lesson says" {
+	[ ! -e "$cache/config.json" ] || skip "the next test does the same with the real encoder"
+	[ "$(grep -c '^[a-z]' "$lesson")" -ge 18 ]
+	# a tiny encoder: its answers are nothing to go by, and one that it refuses is no mistake here
+	sed -i 's/^\(refer-ask .*"\)$/\1 || [ $? = 1 ]/; s/^\("how far.*"\)$/\1 || [ $? = 1 ]/' "$lesson"
+	sed -i 's/^refer-ask -o books.png.*/& ; touch books.png/' "$lesson"
+	follow "$(cd "$BATS_TEST_DIRNAME/../golden/bert" && pwd)"
+	left
+}
+
 @test "with the real encoder the answers are those of the page" {
 	[ -e "$cache/config.json" ] || skip "make encoder has not been run"
 	follow "$cache"
+	left
 	# nothing but that sentences told look-alikes apart
 	[ -z "$(grep -v 'masks that a detector found for others, as their sentences say' err)" ]
 	# what is found, up to its percentage

@@ -83,6 +83,13 @@ static double compare_step(const struct reference_sample *s, struct floats *f, c
 	return fmax(worst, compare_parameters(s, f, x, name));
 }
 
+/* Several blocks, the last not full. What sanitizers find in many they find in some. */
+#ifdef __SANITIZE_ADDRESS__
+enum { MANY = 600 };
+#else
+enum { MANY = 1500 };
+#endif
+
 /* One sample by all kernels that there are: worst (KERNELS) grows. */
 static void compare(const struct reference_options *o, int sampled, const char *name, double *worst)
 {
@@ -129,7 +136,7 @@ static void against_reference(void)
 					reference_defaults(7 + (uint64_t)c, (enum refer_interaction)i,
 						(enum refer_similarity)sim, (enum refer_contrast)c);
 				char name[128];
-				o.n = 1500; /* several blocks, the last not full */
+				o.n = MANY;
 				o.feature_width = widths[k % 4];
 				snprintf(name, sizeof name, "%s, %s, contrast %d with %s, width %d", of, by,
 					c, samples[k % 3].name, o.feature_width);
@@ -226,7 +233,7 @@ static void threads_agree(enum refer_interaction interaction)
 	struct floats f;
 	struct err e;
 
-	o.n = 6000;
+	o.n = 4 * MANY;
 	o.feature_width = widths[(interaction + 1) % 4];
 	o.pixels = 3000;
 	reference_sample_init(&s, &o);
