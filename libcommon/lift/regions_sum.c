@@ -21,6 +21,8 @@ void regions_sums_free(struct regions_sums *s)
 	*s = (struct regions_sums){0};
 }
 
+enum { PARTS = 16 };
+
 static void add(struct regions_sums *s, const struct shares *shares)
 {
 	for (size_t k = 0; k < shares->n; k++) {
@@ -46,9 +48,11 @@ void regions_sum(struct regions_sums *s, const struct regions *r, const size_t *
 		if (chosen[v] != REGIONS_NONE)
 			add(s, &r->candidates[chosen[v]].shares);
 	list(s, r->gaussians);
-	for (size_t v = 0; v < r->views; v++) {
-		const struct seen *seen = &r->seen[v];
-		for (size_t k = 0; k < s->n && chosen[v] != REGIONS_NONE; k++)
-			s->all[k] += seen_weight(seen, (size_t)s->index[k]);
-	}
+	/* a Gaussian's sum is in the order of the views, whoever makes it */
+#pragma omp parallel for schedule(dynamic)
+	for (size_t part = 0; part < PARTS; part++)
+		for (size_t v = 0; v < r->views; v++)
+			for (size_t k = s->n * part / PARTS;
+				k < s->n * (part + 1) / PARTS && chosen[v] != REGIONS_NONE; k++)
+				s->all[k] += seen_weight(&r->seen[v], (size_t)s->index[k]);
 }
