@@ -38,7 +38,7 @@ static void judge_except(struct meaning *m, int phrase, int except)
 
 	for (size_t o = 0; o < n; o++) {
 		value[o] = 1 - (1 - EXCEPT_LEAST) * known * fit[o] / most;
-		there[o] *= value[o];
+		there[o] *= value[o] / (value[o] + RELATION_THERE) * (1 + RELATION_THERE);
 	}
 	meaning_take_part(m);
 }
