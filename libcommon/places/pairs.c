@@ -20,6 +20,8 @@ static const double above_all = 0.6, above_soft = 0.1;
 static const double upside_down = 0.2;
 /* How wrong it is to say of a thing on another that it is on the table. */
 static const double on_the_rest = 0.55;
+/* The gap between the heights of two things at which that is half so. */
+static const double same_height = 0.25;
 /* A gap that is none, as the undersides of things are seen badly; the gap at which "next to", and the
  * distance at which "far from" is half true. */
 static const double touching = 0.05, next_to = 0.3, far_from = 0.8;
@@ -61,6 +63,15 @@ double pair_distance(const struct arranged *p, const struct arranged *q)
 	return hypot(p->centre[0] - q->centre[0], p->centre[1] - q->centre[1]);
 }
 
+/* Whether two things are at one height: what hangs over a desk is not "behind" what stands on it. */
+static double level(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
+{
+	const double gap =
+		fmax(0, fmax(p->low[2] - q->high[2], q->low[2] - p->high[2])) / (same_height * a->spacing);
+
+	return 1 / (1 + gap * gap);
+}
+
 /* p is on the way `main` of q, and not too far aside. */
 static double on_side(const struct arrangement *a, const struct arranged *p, const struct arranged *q,
 	double main, double aside, enum relate_width width)
@@ -77,7 +88,7 @@ static double on_side(const struct arrangement *a, const struct arranged *p, con
 		return there * straight;
 	const double aslant = width == RELATE_WIDE ? sideways_wide : sideways_else;
 	return there * (aslant + (1 - aslant) * straight) * exp(-nearby * distance / a->spacing) *
-	       (1 - pair_stands_on(a, p, q)) * (1 - pair_stands_on(a, q, p));
+	       level(a, p, q) * (1 - pair_stands_on(a, p, q)) * (1 - pair_stands_on(a, q, p));
 }
 
 static double near(const struct arrangement *a, const struct arranged *p, const struct arranged *q)
@@ -151,6 +162,7 @@ double pair_between(const struct arrangement *a, const struct arranged *o, const
 	const double along = (u * x + v * y) / (length * length), aside = fabs(u * y - v * x) / length;
 
 	return logistic((along - 0.1) / 0.05) * logistic((0.9 - along) / 0.05) *
+	       fmax(level(a, o, p), level(a, o, q)) *
 	       exp(-0.5 * pow(aside / (0.25 * length + 0.1 * a->spacing), 2));
 }
 
