@@ -68,11 +68,12 @@ static int is_vague(const struct parse_word *w)
 	return kinds_listed("vague", w->text) || kinds_listed("vague", w->lemma);
 }
 
-/* "The white pebble" is a case: a shape in place of a name, where nothing here is called so. "A power strip"
- * and "a sheet of paper" are names. */
+/* "The white pebble" is a case: a shape in place of a name, where nothing here is called so. "A power strip",
+ * "a sheet of paper" and "the sheets" are names. */
 static int is_shape(const struct parse *p, const struct parse_phrase *f, int head)
 {
-	return f->noun.n == 1 && kinds_listed("shape", p->words[head].lemma) &&
+	return f->noun.n == 1 && (f->attributes.n || f->clauses.n) &&
+	       kinds_listed("shape", p->words[head].lemma) &&
 	       !parse_word_is(p, head + 1, "of");
 }
 
