@@ -307,7 +307,8 @@ static void judge_clause(struct meaning *m, int phrase, int clause, const double
 	double *value = meaning_add_part(m, phrase, is_size(c) ? MEANING_SIZE : MEANING_CLAUSE, clause);
 	double *there = there_of(m, phrase);
 	const double least = is_size(c) ? SIZE_LEAST : RELATION_LEAST;
-	const double soft = c->negated ? DENIED_THERE : is_plain_fact(c) ? CONTACT_THERE : RELATION_THERE;
+	const int is_denied = c->negated && m->sentence->parse->phrases[phrase].count == PARSE_ONE;
+	const double soft = is_denied ? DENIED_THERE : is_plain_fact(c) ? CONTACT_THERE : RELATION_THERE;
 
 	judge_predication(m, phrase, c, fit, m->scratch + 7 * n, value);
 	for (size_t o = 0; o < n; o++) {

@@ -73,8 +73,7 @@ static int is_vague(const struct parse_word *w)
 static int is_shape(const struct parse *p, const struct parse_phrase *f, int head)
 {
 	return f->noun.n == 1 && (f->attributes.n || f->clauses.n) &&
-	       kinds_listed("shape", p->words[head].lemma) &&
-	       !parse_word_is(p, head + 1, "of");
+	       kinds_listed("shape", p->words[head].lemma) && !parse_word_is(p, head + 1, "of");
 }
 
 /* "Something orange" is any thing of that colour; "the orange" is a fruit. */
