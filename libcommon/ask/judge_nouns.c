@@ -72,7 +72,7 @@ static int is_vague(const struct parse_word *w)
  * "a sheet of paper" and "the sheets" are names. */
 static int is_shape(const struct parse *p, const struct parse_phrase *f, int head)
 {
-	return f->noun.n == 1 && (f->attributes.n || f->clauses.n) &&
+	return f->noun.n == 1 && (f->count == PARSE_ONE || f->attributes.n || f->clauses.n) &&
 	       kinds_listed("shape", p->words[head].lemma) && !parse_word_is(p, head + 1, "of");
 }
 
