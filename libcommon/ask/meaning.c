@@ -104,7 +104,7 @@ int meaning_head_of(const struct parse *p, const struct parse_phrase *f)
 {
 	static const char generic[] =
 		"thing|object|item|one|something|anything|everything|stuff|what|whatever|which|who|"
-		"whoever|thingy|other|another|piece|somewhere|place|spot";
+		"whoever|thingy|other|another|piece";
 	const int head = f->noun.n ? f->noun.item[f->noun.n - 1] : -1;
 
 	return head >= 0 && (meaning_word_is(&p->words[head], generic) ||
