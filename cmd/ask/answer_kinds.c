@@ -277,6 +277,8 @@ static int find_things(struct answer_told *t, struct asking_answer *found, struc
 		return answering_counts(t, found, a, to, e);
 	case QUESTION_SAME:
 		return answering_same(t, found, a, to, e);
+	case QUESTION_COLOUR:
+		return answering_colour(t, found, a, to, e);
 	default:
 		return answer_one(t, found, a, to, e);
 	}
@@ -380,7 +382,7 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 		*t->value = 0;
 	else if (kind == QUESTION_DISTANCE)
 		answering_measure_distance(t);
-	else if (kind == QUESTION_COLOUR || kind == QUESTION_LOOK)
+	else if ((kind == QUESTION_COLOUR && !*t->value) || kind == QUESTION_LOOK)
 		answer_looks(t, kind == QUESTION_COLOUR, t->value, sizeof t->value);
 	else if (kind >= QUESTION_HEIGHT && kind <= QUESTION_SIZE)
 		answering_say_size(t);

@@ -1,6 +1,7 @@
 /* What a thing looks like, in words: its colours, or what else sentences say of it. */
-#include "cmd/ask/reply.h"
+#include "cmd/ask/answering.h"
 
+#include "base/mem.h"
 #include "lang/colours.h"
 #include "lang/finish.h"
 
@@ -126,4 +127,75 @@ void answer_looks(const struct answer_told *t, int is_colour, char *to, size_t r
 		parse_words_add(&words, *to ? ", " : "");
 		parse_words_add(&words, *own ? own : "not known");
 	}
+}
+
+static int is_with(const struct parse *p, int phrase)
+{
+	int is = 0;
+
+	for (int k = 0; k < p->clause_count; k++)
+		is |= p->clauses[k].relation == PARSE_WITH && parse_list_has(&p->clauses[k].anchors, phrase);
+	return is;
+}
+
+/* The colours that sentences say a part of a thing has: "with black handles". */
+static void say_part(const struct vocabulary *v, size_t thing, const char *part, struct parse_words *to)
+{
+	for (size_t r = 0; r < v->lifted->sentences; r++) {
+		const struct parse *p = &v->parses[r];
+		for (int k = 1; k < p->phrase_count && (size_t)v->lifted->object[r] == thing; k++) {
+			const struct parse_list *noun = &p->phrases[k].noun, *say = &p->phrases[k].attributes;
+			const int is_part = noun->n && is_with(p, k) &&
+					    !strcmp(p->words[noun->item[noun->n - 1]].lemma, part);
+			for (int i = 0; i < say->n && is_part; i++) {
+				const int c = colour_word(p->words[say->item[i]].lemma);
+				if (c < 0 || strstr(to->to, colour_name(c)))
+					continue;
+				parse_words_add(to, to->n ? " and " : "");
+				parse_words_add(to, colour_name(c));
+			}
+		}
+	}
+}
+
+/* Words for the thing itself, as far as its colour goes. */
+static int is_aspect(const char *noun)
+{
+	static const char aspects[] = " side top front back bottom inside outside middle rest body surface "
+				      "whole pair set piece ";
+	char padded[TOKEN_LENGTH + 2];
+
+	snprintf(padded, sizeof padded, " %s ", noun);
+	return strstr(aspects, padded) != NULL;
+}
+
+int answering_colour(struct answer_told *t, struct asking_answer *found, struct asking *a,
+	const struct report *to, struct err *e)
+{
+	SCOPED_BY(asking_answer_free) struct asking_answer whole = {0};
+	const struct question_asked *q = &t->asked;
+	char part[TOKEN_LENGTH], own[CALLING_TEXT] = "";
+	struct parse_words words = {own, 0, sizeof own};
+
+	if (!*q->text[1])
+		return asking_ask(a, q->text[0], 0, found, to, e);
+	question_noun(q->text[0], part);
+	if (asking_ask(a, q->text[1], 0, &whole, to, e))
+		return -1;
+	if (whole.count == 1 && !answering_is_unsure(&whole))
+		say_part(whole.words, whole.things[0], part, &words);
+	if (*own) {
+		answering_say(t, "%s", own);
+		*found = whole;
+		whole = (struct asking_answer){0};
+		return 0;
+	}
+	if (asking_ask(a, q->text[0], 0, found, to, e))
+		return -1;
+	if (whole.count == 1 && found->count == 1 && whole.things[0] == found->things[0] && *part &&
+		strstr(q->text[0], " of ") && !is_aspect(part)) {
+		found->count = 0;
+		snprintf(found->reason, sizeof found->reason, "no sentence says what colour its %s is", part);
+	}
+	return 0;
 }

@@ -21,6 +21,10 @@ size_t answering_count_kinds(const struct answer_told *t);
 int answering_counts(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e);
 
+/* A question for a colour: of a thing, or of a part of it, where a sentence says what colour that has. */
+int answering_colour(struct answer_told *t, struct asking_answer *found, struct asking *a,
+	const struct report *to, struct err *e);
+
 /* Whether the things are alike in t->asked's size or colour: t->is_yes. Likewise. */
 int answering_same(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e);

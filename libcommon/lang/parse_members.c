@@ -1,6 +1,8 @@
-/* What is named one by one: "two boxes, the red one on the shelf and the one by the door". */
+/* What is named one by one: "two boxes, the red one on the shelf and the one by the door", "the tallest of
+ * the mug and the jar". */
 #include "lang/analysis.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Whether a phrase has no noun but the target's: "the red one". */
@@ -61,10 +63,54 @@ static int turn(struct parse *p, struct err *e)
 	return 0;
 }
 
-int parse_members(struct parse *p, struct err *e)
+/* Whether the target and what is meant too are a choice: "of the mug and the jar", of which one is most so.
+ */
+static int are_choice(const struct parse *p)
 {
 	const struct parse_phrase *f = &p->phrases[0];
+	int word = 0, is = 0;
 
+	while (word < p->word_count && p->words[word].span.end <= f->span.begin)
+		word++;
+	while (word > 0 && parse_word_is(p, word - 1, "the|my|your|this|that"))
+		word--;
+	if (!word || !f->also.n || f->count != PARSE_ONE || f->group ||
+		!parse_word_is(p, word - 1, "of|among|between|from"))
+		return 0;
+	for (int k = 0; k < f->clauses.n; k++) {
+		const struct parse_clause *c = &p->clauses[f->clauses.item[k]];
+		is |= c->degree != PARSE_PLAIN && !c->anchors.n;
+	}
+	return is;
+}
+
+/* The target becomes one of several, of which its superlatives tell it. */
+static int turn_choice(struct parse *p, struct err *e)
+{
+	const int last = p->phrase_count;
+	struct parse_phrase *phrases = realloc(p->phrases, sizeof *phrases * (size_t)(last + 1));
+	struct parse_phrase one = {.count = PARSE_ONE};
+
+	if (!phrases)
+		return err_set(e, ERR_SYSTEM, "parse: out of memory");
+	p->phrases = phrases;
+	p->phrase_count++;
+	one.span = phrases[0].span;
+	one.group = phrases[0].also.n + 1;
+	one.among = phrases[0].also;
+	one.clauses = phrases[0].clauses;
+	one.except = phrases[0].except;
+	phrases[last] = phrases[0];
+	phrases[last].also = phrases[last].clauses = phrases[last].except = (struct parse_list){0};
+	phrases[0] = one;
+	return parse_list_add(&phrases[0].among, last, e);
+}
+
+int parse_members(struct parse *p, struct err *e)
+{
+	if (are_choice(p) && turn_choice(p, e))
+		return -1;
+	const struct parse_phrase *f = &p->phrases[0];
 	if (f->among.n > 1 && f->count == PARSE_ONE && !f->group)
 		p->phrases[0].group = f->among.n;
 	if (!are_members(p))

@@ -153,10 +153,10 @@ static void add_object(char to[QUESTION_TEXT], const struct matching *m, const c
 static int relation_of_noun(const struct tokens *t)
 {
 	for (int i = 0; i < t->n; i++)
-		if (tokens_is(t, i, "height|width|length|size"))
-			return tokens_is(t, i, "height") ? PARSE_TALLER
-			       : tokens_is(t, i, "size") ? PARSE_LARGER
-							 : PARSE_WIDER;
+		if (tokens_is(t, i, "height|width|length|size|space|room"))
+			return tokens_is(t, i, "height")	 ? PARSE_TALLER
+			       : tokens_is(t, i, "width|length") ? PARSE_WIDER
+								 : PARSE_LARGER;
 	return -1;
 }
 
@@ -179,7 +179,8 @@ static void take(struct question_asked *q, size_t row, const struct matching *m,
 		q->relation = PARSE_NEAR;
 	if (strstr(rows[row].said, "far above|"))
 		q->relation = PARSE_ABOVE;
-	if (strstr(rows[row].said, "difference") || strstr(rows[row].said, "same|equal"))
+	if (strstr(rows[row].said, "difference") || strstr(rows[row].said, "same|equal") ||
+		strstr(rows[row].said, "height|size") || strstr(rows[row].said, "room|height"))
 		q->relation = relation_of_noun(m->tokens);
 	take_numbers(q, rows[row].said,
 		tokens_is(m->tokens, word.begin, "one") ? 1
@@ -208,7 +209,7 @@ static int filler_length(const struct tokens *t, int i)
 	static const char say[] = "say|think|guess|reckon|estimate|suppose";
 
 	if (tokens_class(t, i) == CLOSED_AUXILIARY && tokens_is(t, i + 1, "you") && tokens_is(t, i + 2, say))
-		return 3;
+		return 3 + (!i && tokens_is(t, 3, "that"));
 	if (!i && tokens_is(t, 0, "is") && tokens_is(t, 1, "it") &&
 		tokens_is(t, 2, "true|right|correct|so") && tokens_is(t, 3, "that"))
 		return 4;
@@ -221,7 +222,7 @@ static void leave_fillers(struct tokens *t)
 
 	for (int i = 0; i < t->n; i++) {
 		const int skip = filler_length(t, i);
-		if (skip == 4)
+		if (skip >= 3 && !i)
 			memcpy(t->word[n++].text, "so", 3);
 		if (skip)
 			i += skip - 1;

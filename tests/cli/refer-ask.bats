@@ -42,6 +42,25 @@ setup() {
 	done <things
 }
 
+@test "the colour of a part is what a sentence says of it, and never that of the whole" {
+	real=${ENCODER_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/refersplat/encoder}
+	[ -e "$real/config.json" ] || skip "make encoder has not been run" # the tiny one takes few such sentences apart
+	thing=$(head -n 1 things)
+	mkdir -p parts/lifted
+	ln -s ../run/scene parts/scene
+	{ cat sentences.jsonl; jq -nc --arg thing "$thing" '{ref: "part", object: $thing, split: "train", text: "the \($thing) with a turquoise handle"}'; } >sentences.parts.jsonl
+	"$BIN/text-encode" -q --model "$real" -o parts.safetensors sentences.parts.jsonl
+	"$BIN/refer-lift" -q --names masks --scene run/scene --weights weights --text parts.safetensors -o parts/lifted/model.safetensors \
+		--masks <(cat truth.jsonl; jq -c --arg thing "$thing" 'select(.object == $thing) | .ref = "part"' truth.jsonl)
+	part() { "$BIN/refer-ask" --encoder "$real" --json parts "$1"; }
+	for question in "what colour is the handle of the $thing?" "what's the $thing's handle colour?" "which colour does the handle on the $thing have?"; do
+		[ "$(part "$question" | jq -r .value)" = turquoise ]
+	done
+	part "what colour is the $thing?" | jq -e --arg colour "${thing%% *}" '.value | contains($colour)'
+	part "what colour is the lid of the $thing?" >said || [ $? = 1 ]
+	jq -e '.answered | not' said
+}
+
 @test "the nearest thing is the one whose centre is nearest, and its side is that of the viewpoint" {
 	view=$(jq -r '.[0].name' run/scene/cameras.json)
 	for thing in "$(head -n 1 things)" "$(tail -n 1 things)"; do

@@ -43,6 +43,24 @@ static void counts_things(void)
 	counts("an atlas", ". T", PARSE_ONE, 0);
 }
 
+/* Superlatives before a list choose from it; those within one do not. */
+static void choices(const char *text, const char *roles, int among)
+{
+	struct parse p = built(text, roles, PARSE_SMALLER);
+	const struct parse_phrase *f = &p.phrases[0];
+
+	CHECK(f->among.n == among && f->also.n == !among && (!among || (f->clauses.n == 1 && !f->noun.n)),
+		"'%s': one of %d, %d also", text, f->among.n, f->also.n);
+	parse_free(&p);
+}
+
+static void counts_choices(void)
+{
+	choices("the smallest of the lamp and the plate", ". P . . T . . L", 2);
+	choices("the lamp and the smallest plate", ". T . . P5 L", 0);
+	choices("the smallest lamp and the plate", ". P T . . L", 0);
+}
+
 /* "Last" and "second" of time and steps count nothing. */
 static void counts_in_order(void)
 {
@@ -129,6 +147,7 @@ int main(void)
 	tells_use();
 	tells_places();
 	counts_things();
+	counts_choices();
 	counts_in_order();
 	tells_way();
 	tells_members();

@@ -47,6 +47,16 @@ static void kinds(void)
 	is("I am thirsty, is there a mug?", QUESTION_THERE, "I am thirsty, is there a mug?", "");
 	is("how many of the mugs have a lid?", QUESTION_NUMBER, "the mugs that have a lid", "");
 	is("are there more than two mugs?", QUESTION_THERE, "all mugs", "");
+	is("the mugs, how many of them are there?", QUESTION_NUMBER, "all the mugs", "");
+	is("of the mugs, how many are red?", QUESTION_NUMBER, "the mugs that are red", "");
+	is("what colour is the lid of the jug?", QUESTION_COLOUR, "the lid of the jug", "the jug");
+	is("what colour are the jug's handles?", QUESTION_COLOUR, "the handles of the jug", "the jug");
+	is("between the mug and the jug which is taller?", QUESTION_COMPARE, "the mug", "the jug");
+	is("which takes up more room, the mug or the jug?", QUESTION_COMPARE, "the mug", "the jug");
+	is("would you say the mug is taller than the jug?", QUESTION_MORE, "the mug", "the jug");
+	is("tallest out of the mug, the jug and the tray?", QUESTION_WHICH,
+		"the tallest of the mug, the jug and the tray", "");
+	is("how far is one mug from the other?", QUESTION_DISTANCE, "all mug", "");
 	is("what else is red except the mugs?", QUESTION_SET, "everything that is red except the mugs", "");
 	is("is there a mug larger than the jug?", QUESTION_THERE, "a mug that is larger than the jug", "");
 	is("are there more mugs than jugs?", QUESTION_TALLY, "all mugs", "all jugs");
