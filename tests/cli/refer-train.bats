@@ -463,7 +463,7 @@ cut_short() {
 }
 
 @test "a training that is interrupted leaves a checkpoint, its own exit status, and goes on to the same model" {
-	local files=(--scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 3000)
+	local files=(--scene scene --weights weights --text text.safetensors --masks masks.jsonl --iterations 1500)
 	local way=(--interaction none --contrast none)
 	"$BIN/refer-train" "${files[@]}" "${way[@]}" -o whole
 	for signal in INT TERM; do

@@ -1,6 +1,6 @@
 #!/usr/bin/env bats
 # The Debian package: what is in it and what it says that it needs; and its programs and library work from an unpacked folder.
-# Parts: Makefile tests/deb.mk
+# Parts: tests/deb.mk
 
 setup_file() {
 	export ROOT=$BATS_TEST_DIRNAME/../..

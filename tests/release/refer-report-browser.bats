@@ -1,6 +1,7 @@
 #!/usr/bin/env bats
 # The page of refer-report in a browser, Chromium without a window: opened, searched, sorted, clicked, and the scene shown, with
 # no message on the console. Skipped where there is no Chromium; the scene's part where `make viewer` has not been run.
+# Parts: cmd/report/.* pipelines/viewer.mk
 
 setup_file() {
 	BIN=${BIN:-$BATS_TEST_DIRNAME/../../build/bin}

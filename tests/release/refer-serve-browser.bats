@@ -2,6 +2,7 @@
 # The page of refer-serve in a browser, Chromium without a window: a scene without names is opened, six things are named by clicks
 # in one photograph and asked, with no message on the console and no request but to the server. Skipped where there is no
 # chromedriver; the click in the scene where `make viewer` has not been run. SHOTS=DIR keeps pictures of it.
+# Parts: cmd/serve/.* cmd/report/report_viewer.* pipelines/viewer.mk
 
 bats_require_minimum_version 1.5.0
 
