@@ -61,7 +61,8 @@ programs=(tests/unit/test_*.c)
 [ -d "$build/fuzz" ] && programs+=(tests/fuzz/fuzz_*.c)
 release=(tests/release/*.bats)
 [ -n "${RELEASE-}" ] || mapfile -t release < <(tests/changed.sh --release)
-printf '%s\n' "${programs[@]}" tests/*.bats tests/{cli,format,pipeline}/*.bats "${release[@]}" | grep -v '\*' | grep -F -- "$filter" |
+# The longest first, so that none is alone at the end.
+printf '%s\n' "${release[@]}" tests/{pipeline,cli}/*.bats tests/unit/test_step.c tests/*.bats tests/format/*.bats "${programs[@]}" | awk '!seen[$0]++' | grep -v '\*' | grep -F -- "$filter" |
 	grep -vE -- "${SKIP:-^$}" |
 	xargs -P "$jobs" -I{} bash -c 'run_one {}'
 cat "$logs"/*.count 2>/dev/null | awk '{p += $1; f += $2} END {
