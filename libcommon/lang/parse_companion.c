@@ -147,8 +147,7 @@ static void keep_clauses(const struct parse *p, struct parse_list *l, int from)
 	l->n = n;
 }
 
-/* Room for two phrases and a clause more. */
-static int make_room(struct parse *p, struct err *e)
+int parse_make_room(struct parse *p, struct err *e)
 {
 	struct parse_phrase *phrases = realloc(p->phrases, sizeof *phrases * (size_t)(p->phrase_count + 2));
 	if (phrases)
@@ -242,7 +241,7 @@ int parse_companion(struct parse *p, struct err *e)
 	struct parse_phrase words = {0};
 	if (c.second >= 0 && take_words(p, &words, &p->phrases[c.second], c.from, c.place, e))
 		return -1;
-	const int bad = take_first(p, &c, &is_so, e) || (is_so && make_room(p, e));
+	const int bad = take_first(p, &c, &is_so, e) || (is_so && parse_make_room(p, e));
 	if (bad || !is_so) {
 		free(words.noun.item);
 		free(words.attributes.item);

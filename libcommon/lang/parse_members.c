@@ -2,7 +2,6 @@
  * the mug and the jar". */
 #include "lang/analysis.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* Whether a phrase has no noun but the target's: "the red one". */
@@ -88,12 +87,11 @@ static int are_choice(const struct parse *p)
 static int turn_choice(struct parse *p, struct err *e)
 {
 	const int last = p->phrase_count;
-	struct parse_phrase *phrases = realloc(p->phrases, sizeof *phrases * (size_t)(last + 1));
 	struct parse_phrase one = {.count = PARSE_ONE};
 
-	if (!phrases)
-		return err_set(e, ERR_SYSTEM, "parse: out of memory");
-	p->phrases = phrases;
+	if (parse_make_room(p, e))
+		return -1;
+	struct parse_phrase *phrases = p->phrases;
 	p->phrase_count++;
 	one.span = phrases[0].span;
 	one.group = phrases[0].also.n + 1;

@@ -175,13 +175,12 @@ static void take(struct question_asked *q, size_t row, const struct matching *m,
 	if (q->kind == QUESTION_SET) /* "closest to the mug" is one */
 		q->most = closed >= 0 && closed_words[closed].value == PARSE_MOST &&
 			  (q->relation == PARSE_NEAR || q->relation == PARSE_FAR);
+	if (!word.end && (q->kind == QUESTION_COMPARE || q->kind == QUESTION_SAME))
+		q->relation = relation_of_noun(m->tokens);
 	if (strstr(rows[row].said, "nearer|closer A"))
 		q->relation = PARSE_NEAR;
 	if (strstr(rows[row].said, "far above|"))
 		q->relation = PARSE_ABOVE;
-	if (strstr(rows[row].said, "difference") || strstr(rows[row].said, "same|equal") ||
-		strstr(rows[row].said, "height|size") || strstr(rows[row].said, "room|height"))
-		q->relation = relation_of_noun(m->tokens);
 	take_numbers(q, rows[row].said,
 		tokens_is(m->tokens, word.begin, "one") ? 1
 		: closed < 0				? 0

@@ -45,7 +45,8 @@ struct question_asked {
 	int most; /* of QUESTION_THERE: how many there may be, and of QUESTION_SET 1 where but one is; 0: any
 		     number */
 	int is_denied;		     /* of QUESTION_THERE: yes where none is */
-	char text[3][QUESTION_TEXT]; /* what to ask for; "" nothing. The third: what two are compared by */
+	char text[3][QUESTION_TEXT]; /* what to ask for; "" nothing. The second of QUESTION_COLOUR: the whole,
+				      * where the first is a part. The third: what two are compared by */
 	struct parse_span about;     /* of the question: the thing that it asks about; empty: not known */
 };
 
