@@ -15,6 +15,7 @@ struct walk {
 	mask_tree_put *put;
 	void *to;
 	size_t pictures;
+	int is_by_thing; /* the folders are things', and pictures views'; -1 while that is looked for */
 };
 
 static int is_shown(const struct dirent *d)
@@ -38,25 +39,37 @@ static int is_class(const char *classes, const char *name)
 	return !classes;
 }
 
-static int walk_picture(struct walk *w, const char *folder, const char *view, const char *file, struct err *e)
+/* CVAT and Pascal VOC have pictures of colours, one for each class, in such a folder, and others beside it.
+ */
+static const char classes_folder[] = "SegmentationClass";
+
+/* A picture in a folder, of which `view` is the name as a view's. */
+static int walk_picture(struct walk *w, const char *path, const char *folder, const char *view,
+	const char *file, struct err *e)
 {
 	SCOPED char *stem = path_ends(file, ".png") ? mem_strdup(file, e) : NULL;
 
 	if (!stem)
 		return path_ends(file, ".png") ? -1 : 0;
 	stem[strlen(stem) - 4] = 0;
-	if (stem[view_stem(stem)])
+	const size_t bare = view_stem(stem);
+	if (!strncmp(folder, classes_folder, sizeof classes_folder - 1))
+		return w->is_by_thing < 0 ? 0 : (w->pictures++, w->put(w->to, path, NULL, NULL, e));
+	if (stem[bare] && !w->is_by_thing)
 		return err_set(e, ERR_FORMAT,
-			"%s/%s: the mask of a photograph, as COLMAP names them, not of a thing: give such pictures by themselves, with --names",
-			folder, file);
-	SCOPED char *name = name_from_file(stem, e);
-	SCOPED char *path = name ? file_join(folder, file, "", e) : NULL;
-	if (!path)
+			"%s: the mask of a photograph, as COLMAP names them, not of a thing: give such pictures by themselves, with --names",
+			path);
+	SCOPED char *name = name_from_file(w->is_by_thing ? folder : stem, e);
+	stem[bare] = 0;
+	SCOPED char *own = name ? name_to_view(stem, e) : NULL;
+	if (!own)
 		return -1;
+	if (w->is_by_thing < 0)
+		return w->put(w->to, path, view, own, e);
 	if (!is_class(w->classes, name))
 		return 0;
 	w->pictures++;
-	return w->put(w->to, path, view, name, e);
+	return w->put(w->to, path, w->is_by_thing ? own : view, name, e);
 }
 
 /* What a folder has, in order of names: their count, or -1 with *e. free() all. */
@@ -68,20 +81,24 @@ static int list(const char *folder, struct dirent ***names, struct err *e)
 	return n < 0 ? err_errno(e, "%s", folder) : n;
 }
 
-static int walk_view(struct walk *w, const char *folder, const char *view, struct err *e)
+static int walk_folder(struct walk *w, const char *path, const char *folder, const char *view, struct err *e)
 {
-	struct dirent **names;
-	const int n = list(folder, &names, e);
+	const int is_beside = !strncmp(folder, classes_folder, strlen("Segmentation")) &&
+			      strcmp(folder, classes_folder) != 0;
+	struct dirent **names = NULL;
+	const int n = is_beside ? 0 : list(path, &names, e);
 	int bad = n < 0;
 
-	for (int i = 0; i < n && !bad; i++)
-		bad = walk_picture(w, folder, view, names[i]->d_name, e);
+	for (int i = 0; i < n && !bad; i++) {
+		SCOPED char *picture = file_join(path, names[i]->d_name, "", e);
+		bad = !picture || walk_picture(w, picture, folder, view, names[i]->d_name, e);
+	}
 	mem_free_strings((char **)names, n < 0 ? 0 : (size_t)n);
 	return bad ? -1 : 0;
 }
 
-/* The folders of a folder, each a view's: named as its photograph, perhaps with the ending. */
-static int walk_views(struct walk *w, struct err *e)
+/* The folders of a folder, each a view's, named as its photograph, perhaps with the ending, or a thing's. */
+static int walk_folders(struct walk *w, struct err *e)
 {
 	struct dirent **names;
 	const int n = list(w->dir, &names, e);
@@ -101,7 +118,7 @@ static int walk_views(struct walk *w, struct err *e)
 	}
 	bad = bad || views_name(files, count, views, w->dir, e);
 	for (size_t i = 0; i < count; i++) {
-		bad = bad || walk_view(w, paths[i], views[i], e);
+		bad = bad || walk_folder(w, paths[i], files[i], views[i], e);
 		mem_free_all(paths[i], views[i]);
 	}
 	mem_free_strings((char **)names, n < 0 ? 0 : (size_t)n);
@@ -116,15 +133,49 @@ static int read_classes(struct walk *w, struct err *e)
 						      !(w->classes = name_copy(text, e))));
 }
 
-int mask_tree_each(const char *dir, mask_tree_put *put, void *to, struct err *e)
+/* How many pictures there are, and of how many the folder or the picture is named as a view is. */
+struct order {
+	const struct cameras *scene;
+	size_t pictures, by_view, by_thing;
+};
+
+/* Whether the scene has a view of this name; of no known scene, whether it has three digits in a row, as
+ * photographs have that are numbered. */
+static int is_view(const struct cameras *scene, const char *name)
 {
-	struct walk w = {.dir = dir, .put = put, .to = to};
-	int bad = read_classes(&w, e) || walk_views(&w, e);
+	if (scene)
+		return cameras_find(scene, name) != NULL;
+	while (*name && strspn(name, "0123456789") < 3)
+		name++;
+	return *name != 0;
+}
+
+static int look(void *to, const char *path, const char *view, const char *name, struct err *e)
+{
+	struct order *o = to;
+
+	(void)path, (void)e;
+	o->pictures++;
+	o->by_view += (size_t)is_view(o->scene, view);
+	o->by_thing += (size_t)is_view(o->scene, name);
+	return 0;
+}
+
+int mask_tree_each(const char *dir, const struct cameras *scene, mask_tree_put *put, void *to, struct err *e)
+{
+	struct order order = {.scene = scene};
+	struct walk w = {.dir = dir, .put = look, .to = &order, .is_by_thing = -1};
+	int bad = read_classes(&w, e) || walk_folders(&w, e);
+
+	w.is_by_thing = !order.by_view && order.by_thing && (scene || order.by_thing == order.pictures);
+	w.put = put;
+	w.to = to;
+	bad = bad || walk_folders(&w, e);
 
 	if (!bad && !w.pictures)
 		bad = err_set(e, ERR_FORMAT,
 			"%s: has no masks VIEW/NAME.png%s; give pictures of views, and labels, one by one",
 			dir, w.classes ? " of the names in classes.txt" : "");
 	free(w.classes);
-	return bad ? -1 : 0;
+	return bad ? -1 : w.is_by_thing;
 }

@@ -10,15 +10,19 @@
 #include <math.h>
 #include <strings.h>
 
-int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e)
+int painting_put(struct painting_names *names, struct mask *mask, struct warping *w, const char *path,
+	FILE *out, struct err *e)
 {
+	const int is_nothing = name_is_nothing(mask->object);
 	int bad = 0;
 
-	if (warping_mask(w, mask->view, &mask->rle, e)) {
+	names->nothing += (size_t)is_nothing;
+	names->written += (size_t)!is_nothing;
+	if (!is_nothing && warping_mask(w, mask->view, &mask->rle, e)) {
 		if (e->code == ERR_FORMAT)
 			err_prefix(e, file_name(path));
 		bad = -1;
-	} else {
+	} else if (!is_nothing) {
 		bad = masks_put(out, mask, e);
 	}
 	rle_free(&mask->rle);
@@ -29,35 +33,6 @@ int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *o
 static int has_boxes(const struct annotation *a, const struct warping *w)
 {
 	return a->boxes && a->boxes->box_count == a->shapes && w->way == WARP_NONE;
-}
-
-/* A mask record for each label of each picture that a JSON file is of. */
-static int put_labels(const struct annotations *a, const char *path, struct warping *w, FILE *out,
-	size_t *count, const struct report *to, struct err *e)
-{
-	for (size_t i = 0; i < a->left_count; i++)
-		report_warn(to, "%s: %zu %s are left out", file_name(path), a->left_out[i].n,
-			a->left_out[i].kind);
-	for (size_t i = 0; i < a->n; i++) {
-		const struct annotation *one = &a->items[i];
-		struct mask mask = {.view = one->view,
-			.ref = one->ref,
-			.object = one->name,
-			.score = one->score,
-			.visible = NAN,
-			.place = has_boxes(one, w) ? one->boxes : NULL};
-		if (one->shapes > 1)
-			report_warn(to, "%s: %zu shapes are '%s' in view %s, and are taken as one thing",
-				file_name(path), one->shapes, one->name, one->view);
-		const struct rle *shown = &one->mask;
-		if (!rle_area(shown))
-			continue;
-		++*count;
-		if (rle_from_runs(&mask.rle, shown->runs, shown->n, shown->height, shown->width, e) ||
-			painting_put(&mask, w, path, out, e))
-			return -1;
-	}
-	return 0;
 }
 
 /* A picture that a file of labels was of. */
@@ -71,10 +46,36 @@ struct putting {
 	struct warping *w;
 	FILE *out;
 	const struct report *to;
-	size_t count; /* records of labels */
 	struct labelled *labelled;
 	size_t labelled_count, labelled_room;
 };
+
+/* A mask record for each label of each picture that a JSON file is of. */
+static int put_labels(struct putting *p, const struct annotations *a, const char *path, struct err *e)
+{
+	for (size_t i = 0; i < a->left_count; i++)
+		report_warn(p->to, "%s: %zu %s are left out", file_name(path), a->left_out[i].n,
+			a->left_out[i].kind);
+	for (size_t i = 0; i < a->n; i++) {
+		const struct annotation *one = &a->items[i];
+		struct mask mask = {.view = one->view,
+			.ref = one->ref,
+			.object = one->name,
+			.score = one->score,
+			.visible = NAN,
+			.place = has_boxes(one, p->w) ? one->boxes : NULL};
+		if (one->shapes > 1 && !name_is_nothing(one->name))
+			report_warn(p->to, "%s: %zu shapes are '%s' in view %s, and are taken as one thing",
+				file_name(path), one->shapes, one->name, one->view);
+		const struct rle *shown = &one->mask;
+		if (!rle_area(shown))
+			continue;
+		if (rle_from_runs(&mask.rle, shown->runs, shown->n, shown->height, shown->width, e) ||
+			painting_put(p->names, &mask, p->w, path, p->out, e))
+			return -1;
+	}
+	return 0;
+}
 
 /* Pictures that are called the same in different folders would be of one view. */
 static int check_picture(struct putting *p, struct annotations *a, const char *path, struct err *e)
@@ -100,7 +101,7 @@ static int put_labelled(struct putting *p, const char *path, struct err *e)
 	SCOPED_BY(annotations_free) struct annotations a = {0};
 
 	return annotations_read(&a, path, e) || check_picture(p, &a, path, e) || painting_layers(&a, e) ||
-	       put_labels(&a, path, p->w, p->out, &p->count, p->to, e);
+	       put_labels(p, &a, path, e);
 }
 
 /* *count grows by the records. */
@@ -136,26 +137,52 @@ int painting_needs_names(const char *path)
 	return !path_ends(path, ".json") && !path_ends(path, ".jsonl") && !file_is_dir(path);
 }
 
+/* A picture of colours in CVAT's folder SegmentationClass, beside which labelmap.txt says what they mean. */
+static int put_classes(struct putting *p, const char *path, struct err *e)
+{
+	SCOPED char *folder = p->names->n ? NULL : file_dir(path, e),
+		    *map = folder ? file_join(folder, "../labelmap.txt", "", e) : NULL;
+
+	if (!p->names->n && (!map || !file_exists(map)))
+		return map ? err_set(e, ERR_FORMAT,
+				     "%s: its colours need --names NAMES, or CVAT's labelmap.txt beside its folder",
+				     path)
+			   : -1;
+	return (map && painting_names_read(p->names, map, e)) ||
+	       painting_put_colours(p->names, path, p->w, p->out, p->to, e);
+}
+
 static int put_tree_mask(void *to, const char *path, const char *view, const char *name, struct err *e)
 {
 	struct putting *p = to;
 	struct mask mask = {.view = view, .object = name, .score = NAN, .visible = NAN};
 	char fault[NAME_FAULT];
-	const char *reason = name_fault(name, NAME_DATA, fault);
+	const char *reason = name ? name_fault(name, NAME_DATA, fault) : NULL;
 	SCOPED uint8_t *pixels = NULL;
 	int height, width;
 
+	if (!name)
+		return put_classes(p, path, e);
 	if (reason)
 		return err_set(e, ERR_FORMAT, "%s: the name %s", path, reason);
 	if (png_read_mask(path, &pixels, &height, &width, e) ||
 		rle_encode(&mask.rle, pixels, height, width, e))
 		return -1;
-	if (rle_area(&mask.rle)) {
-		p->count++;
-		return painting_put(&mask, p->w, path, p->out, e);
-	}
+	if (rle_area(&mask.rle))
+		return painting_put(p->names, &mask, p->w, path, p->out, e);
 	rle_free(&mask.rle);
 	return 0;
+}
+
+static int put_tree(struct putting *p, const char *path, struct err *e)
+{
+	const int is_by_thing =
+		mask_tree_each(path, p->w->way == WARP_NONE ? NULL : &p->w->cameras, put_tree_mask, p, e);
+
+	if (is_by_thing > 0)
+		report_warn(p->to, "%s: its folders are things and their pictures views, as their names say",
+			path);
+	return is_by_thing < 0 ? -1 : 0;
 }
 
 static int put_any(struct putting *p, const char *path, struct err *e)
@@ -163,9 +190,9 @@ static int put_any(struct putting *p, const char *path, struct err *e)
 	if (path_ends(path, ".json"))
 		return put_labelled(p, path, e);
 	if (path_ends(path, ".jsonl"))
-		return put_records(path, p->w, p->out, &p->count, e);
+		return put_records(path, p->w, p->out, &p->names->written, e);
 	if (file_is_dir(path))
-		return mask_tree_each(path, put_tree_mask, p, e);
+		return put_tree(p, path, e);
 	return painting_put_colours(p->names, path, p->w, p->out, p->to, e);
 }
 
@@ -182,9 +209,13 @@ static int put_all(struct putting *p, const char *const *pictures, size_t count,
 	for (size_t i = 0; i < names->n; i++)
 		seen += names->items[i].is_seen != 0;
 	for (size_t i = 0; i < names->n && seen; i++)
-		if (!names->items[i].is_seen)
+		if (!names->items[i].is_seen && !name_is_nothing(names->items[i].name))
 			report_warn(p->to, "'%s' is in no picture", names->items[i].name);
-	if (seen || p->count)
+	if (names->nothing)
+		report_warn(p->to,
+			"%zu masks are left out, whose names say that they are of no thing, as 'background' does",
+			names->nothing);
+	if (names->written)
 		return 0;
 	return err_set(e, ERR_FORMAT,
 		names->n ? "%s: has none of the colours that have names" : "%s: has no label with an area",

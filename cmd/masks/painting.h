@@ -21,6 +21,7 @@ struct painting_name {
 struct painting_names {
 	size_t n, capacity;
 	struct painting_name *items;
+	size_t written, nothing; /* masks that were, and those left out, whose names are of no thing */
 };
 
 /* Errors: "path:LINE: reason". No colour and no name twice. Returns 0, or -1 with *e; free after either. */
@@ -40,19 +41,23 @@ int painting_write(struct painting_names *names, const char *const *pictures, si
 	const char *path, const struct report *to, struct err *e);
 
 /* A folder of masks as pictures, DIR/VIEW/NAME.png, as mask-export --png writes it and as 3D-OVS has its
- * segmentations. formats/records/annotations.md. */
+ * segmentations, or DIR/NAME/VIEW.png where names say so. formats/records/annotations.md. */
 
-/* Called for each picture: its file, its view and what it is of. Returns 0, or -1 with *e set. */
+/* Called for each picture: its file, its view and what it is of, or NULL for both where colours say what.
+ * Returns 0, or -1 with *e set. */
 typedef int mask_tree_put(void *to, const char *path, const char *view, const char *name, struct err *e);
 
-/* All pictures, by the names of views and then of files; where the folder has a classes.txt, those of its
- * classes only. Returns 0, or -1 with *e set: ERR_FORMAT where there is none. */
-int mask_tree_each(const char *dir, mask_tree_put *put, void *to, struct err *e);
+/* All pictures, by the names of folders and then of files; where the folder has a classes.txt, those of its
+ * classes only. scene: whose views they are, or NULL. Returns 0, 1 where folders are things', or -1 with *e
+ * set: ERR_FORMAT where there is no picture. */
+int mask_tree_each(const char *dir, const struct cameras *scene, mask_tree_put *put, void *to, struct err *e);
 
 /* What the parts of cmd/masks/painting.h share: painting_colours.c has pictures of colours. */
 
-/* The record of a mask, which is freed. Where it goes: the lens's photograph to the view. */
-int painting_put(struct mask *mask, struct warping *w, const char *path, FILE *out, struct err *e);
+/* The record of a mask, which is freed. Where it goes: the lens's photograph to the view. What is called
+ * "background" or the like is left out. */
+int painting_put(struct painting_names *names, struct mask *mask, struct warping *w, const char *path,
+	FILE *out, struct err *e);
 
 /* A mask record for each colour of a picture that has a name. */
 int painting_put_colours(struct painting_names *names, const char *path, struct warping *w, FILE *out,

@@ -70,7 +70,11 @@ static int add_name(struct painting_names *names, const struct jsonl *j, struct 
 	char *text = name_trim(j->line);
 	if (!*text || (*text == '#' && strchr("# \t", text[1])))
 		return 0; /* a comment */
-	char *name = take_colour(text, &colour);
+	char *name = take_colour(text, &colour), *colon = name ? NULL : strchr(text, ':');
+	if (colon && take_colour(colon + 1, &colour)) { /* CVAT's NAME:R,G,B:PARTS:ACTIONS */
+		*colon = 0;
+		name = text;
+	}
 	if (!name)
 		return jsonl_err(j, e,
 			"does not begin with #rrggbb, R,G,B or 0 to 65535, and a blank or comma before the name");
@@ -134,9 +138,10 @@ struct picture_read {
 };
 
 /* The mask of a colour, if any pixel has it: its record. */
-static int put_name(
-	struct picture_read *p, struct painting_name *name, struct warping *w, FILE *out, struct err *e)
+static int put_name(struct picture_read *p, struct painting_names *names, size_t i, struct warping *w,
+	FILE *out, struct err *e)
 {
+	struct painting_name *name = &names->items[i];
 	struct mask mask = {.view = p->view, .object = name->name, .score = NAN, .visible = NAN};
 	const size_t pixels = (size_t)p->height * (size_t)p->width;
 	size_t covered = 0;
@@ -148,7 +153,7 @@ static int put_name(
 	name->is_seen = 1;
 	if (rle_encode(&mask.rle, p->mask, p->height, p->width, e))
 		return -1;
-	return painting_put(&mask, w, p->path, out, e);
+	return painting_put(names, &mask, w, p->path, out, e);
 }
 
 /* Colours that differ by at most this in each channel are near; so few near ones are labels without names. */
@@ -239,7 +244,7 @@ int painting_put_colours(struct painting_names *names, const char *path, struct 
 		  check_colours(&p, names, to, e);
 
 	for (size_t i = 0; i < names->n && !bad; i++)
-		bad = put_name(&p, &names->items[i], w, out, e);
+		bad = put_name(&p, names, i, w, out, e);
 	mem_free_all(p.view, p.paint, p.mask);
 	return bad ? -1 : 0;
 }

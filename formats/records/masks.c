@@ -245,11 +245,15 @@ static int find_view(
 	const char *part;
 	int is_so = 0;
 
-	*at = names_find(names, m->view);
-	/* Label Studio puts eight digits before the names of pictures. */
-	const char *own = strspn(m->view, "0123456789abcdef") == 8 && m->view[8] == '-' ? m->view + 9 : NULL;
-	if (*at == NAMES_NONE && own)
-		is_so = (*at = names_find(names, own)) != NAMES_NONE;
+	if ((*at = names_find(names, m->view)) != NAMES_NONE)
+		return 0;
+	/* a picture's name, without its ending and the eight digits that Label Studio puts before it */
+	const int is_marked = strspn(m->view, "0123456789abcdef") == 8 && m->view[8] == '-';
+	SCOPED char *own = mem_strdup(m->view + 9 * is_marked, e);
+	if (!own)
+		return -1;
+	own[view_stem(own)] = 0;
+	is_so = (*at = names_find(names, own)) != NAMES_NONE;
 	for (size_t v = 0; v < c->n && *at == NAMES_NONE; v++)
 		if (c->views[v].source && (is_so = view_part(c->views[v].source, m->view, &part, e)) > 0)
 			*at = v;
@@ -288,21 +292,24 @@ static int leave_out(struct masks *set, long *lines, size_t *views, const char *
 	char few[NAMES_FEW];
 	size_t kept = 0, first = set->n;
 
-	for (size_t i = 0; i < set->n; i++)
+	for (size_t i = 0; i < set->n; i++) {
 		first = views[i] == NAMES_NONE && first == set->n ? i : first;
-	for (size_t i = 0; i < set->n; i++)
 		kept += views[i] != NAMES_NONE;
+	}
 	if (kept == set->n)
 		return 0;
+	const struct mask *lost = &set->items[first];
 	if (!kept)
 		return err_set(e, ERR_FORMAT, "%s:%ld: key 'view': the scene has no view '%.300s'%s%s",
-			file_name(path), lines[first], set->items[first].view, names_few(names, few),
-			strstr(set->items[first].view, ".rf.")
+			file_name(path), lines[first], lost->view, names_few(names, few),
+			strstr(lost->view, ".rf.")
 				? ": Roboflow renames pictures, and may stretch and turn them: export without that, and rename the views"
+			: lost->object && names_find(names, lost->object) != NAMES_NONE
+				? ": 'object' names one: are the two exchanged?"
 				: "");
 	report_warn(to,
 		"%s:%ld: the scene has no view '%.300s': %zu of %zu masks, of views that it lacks, are left out",
-		file_name(path), lines[first], set->items[first].view, set->n - kept, set->n);
+		file_name(path), lines[first], lost->view, set->n - kept, set->n);
 	kept = 0;
 	for (size_t i = 0; i < set->n; i++) {
 		if (views[i] == NAMES_NONE) {

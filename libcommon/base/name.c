@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 #include <stdio.h>
+#include <strings.h>
 
 #include <utf8proc.h>
 
@@ -83,6 +84,23 @@ char *name_copy(const char *text, struct err *e)
 char *name_decomposed(const char *text, struct err *e)
 {
 	return copy_form(text, utf8proc_NFD, e);
+}
+
+int name_is_nothing(const char *name)
+{
+	static const char *const nothing[] = {"background", "bg", "ignore", "ignored", "ignoreregion",
+		"unlabeled", "unlabelled", "void", "dontcare"};
+	char bare[16];
+	size_t n = 0;
+
+	for (; *name && n < sizeof bare - 1; name++)
+		if (!strchr(" _-'", *name))
+			bare[n++] = *name;
+	bare[n] = 0;
+	for (size_t i = 0; i < sizeof nothing / sizeof *nothing; i++)
+		if (!strcasecmp(bare, nothing[i]))
+			return 1;
+	return 0;
 }
 
 char *name_trim(char *text)

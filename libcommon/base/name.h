@@ -21,6 +21,9 @@ const char *name_fault(const char *name, enum name_kind kind, char fault[NAME_FA
 char *name_copy(const char *text, struct err *e);
 char *name_decomposed(const char *text, struct err *e);
 
+/* Whether programs of labels call so what is no thing: "background", "__ignore__", "Unlabeled". */
+int name_is_nothing(const char *name);
+
 /* utf8_plain of what a person typed or pasted, in place, without the blanks at its ends. */
 char *name_trim(char *text);
 

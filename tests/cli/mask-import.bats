@@ -509,6 +509,41 @@ mask-import: warning: a.json: 2 shapes of type 'linestrip' are left out" ]
 	[ ! -e none ]
 }
 
+@test "a folder of masks by thing: as the scene's views or else numbers say; and CVAT's masks of classes" {
+	mkdir -p by/cup by/mug by/v by/w
+	picture by/cup/img_001.png 'ffffff 000000'
+	cp by/cup/img_001.png by/mug/img_002.jpg.png
+	says 0 "mask-import: warning: by: its folders are things and their pictures views, as their names say" "$BIN/mask-import" -o masks by
+	[ "$(jq -r '.view + " " + .object' masks | tr '\n' ';')" = "img_001 cup;img_002 mug;" ]
+	mv by/cup/img_001.png by/cup/a.png && mv by/mug/img_002.jpg.png by/mug/b.png
+	[ "$("$BIN/mask-import" -q by | jq -r .view | tr '\n' ' ')" = "cup mug " ]
+	scene s
+	printf '[%s,%s]' "$(view name='"a"' width=2 height=1)" "$(view name='"b"' width=2 height=1)" >s/cameras.json
+	[ "$("$BIN/mask-import" -q --undistort s by | jq -r .view | tr '\n' ' ')" = "a b " ]
+	mkdir -p cvat/SegmentationClass cvat/SegmentationObject
+	picture cvat/SegmentationClass/f.png '800000 008000' '000000 000000'
+	cp cvat/SegmentationClass/f.png cvat/SegmentationObject
+	says 3 "mask-import: cvat/SegmentationClass/f.png: its colours need --names NAMES, or CVAT's labelmap.txt beside its folder" "$BIN/mask-import" -o none cvat
+	printf '# label:color_rgb:parts:actions\nbackground:0,0,0::\ncup:128,0,0::\nred mug:0,128,0:handle:\n' >cvat/labelmap.txt
+	"$BIN/mask-import" -q -o masks cvat
+	[ "$(jq -r '.view + " " + .object' masks | tr '\n' ';')" = "f cup;f red mug;" ]
+}
+
+@test "what is called background, __ignore__ or the like is no thing" {
+	square() { echo "{\"label\":\"$1\",\"points\":[[$2,0],[$3,0],[$3,4],[$2,4]]}"; }
+	labelme "$(square _background_ 0 6)" "$(square cup 1 3)" "$(square __ignore__ 4 5)" >a.json
+	says 0 "mask-import: warning: 2 masks are left out, whose names say that they are of no thing, as 'background' does" "$BIN/mask-import" -o masks a.json
+	[ "$(jq -r .object masks)" = cup ]
+	printf '0 Unlabeled\n255,0,0 void\n#0000ff kettle' >names
+	mkdir -p tree/v
+	cp view_1.png tree/v/bg.png
+	cp view_1.png tree/v/mug.png
+	"$BIN/mask-import" -q --names names -o masks view_1.png tree
+	[ "$(jq -r .object masks | tr '\n' ' ')" = "kettle mug " ]
+	rm tree/v/mug.png
+	says_like 3 "mask-import: tree: has no label with an area" "$BIN/mask-import" -q -o none tree
+}
+
 @test "mask records are written again" {
 	cp view_1.png black.png
 	printf '%s\n' '{"view":"v","ref":"r","object":"o","score":0.5,"visible":0.25,"segmentation":{"size":[3,4],"counts":[0,3,9]}}' '{"view":"v","object":"p","path":"black.png"}' >m.jsonl

@@ -311,7 +311,7 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 	{ jq -c '.view = "right_" + .view' masks.jsonl; cat folder.jsonl; } >both.jsonl
 	lift -q --masks folder.jsonl -o folder
 	cmp plain folder
-	jq -c '.view = "3f2a1b4c-" + .view' masks.jsonl >label-studio.jsonl
+	jq -c '.view = "3f2a1b4c-" + .view + ".JPG"' masks.jsonl >label-studio.jsonl
 	lift -q --masks label-studio.jsonl -o named
 	cmp plain named
 	lift --masks both.jsonl -o both 2>said
@@ -324,6 +324,8 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 	jq -c '.view = "elsewhere"' masks.jsonl | head -n 1 >away
 	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'; there are 6: view_000, view_001, view_002 ... view_005" --masks away
 	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'; there are 6: view_000, view_001, view_002 ... view_005" --spare away
+	jq -c '.object = "view_001"' away >swapped
+	refuses 3 "swapped:1: key 'view': the scene has no view 'elsewhere'; there are 6: view_000, view_001, view_002 ... view_005: 'object' names one: are the two exchanged?" --masks swapped
 	jq -c '.view += "_png.rf.0a1b2c"' masks.jsonl | head -n 1 >away
 	refuses 3 "away:1: key 'view': the scene has no view 'view_000_png.rf.0a1b2c'; there are 6: view_000, view_001, view_002 ... view_005: Roboflow renames pictures, and may stretch and turn them: export without that, and rename the views" --masks away
 	refuses 3 "scene/splats.safetensors: format is 'refer.splats', expected 'refer.text'" --text scene/splats.safetensors
