@@ -98,7 +98,7 @@ $(BUILD)/tables/lang/colours.inc: libcommon/lang/colours.tsv
 	awk -F '\t' '!/^#/ { printf NF == 4 ? "COLOUR(\"%s\", %s, %s, %s)\n" : "ALIKE(\"%s\", \"%s\")\n", $$1, $$2, $$3, $$4 }' $< >$@
 $(BUILD)/tables/lang/question_kinds.inc: libcommon/lang/question_kinds.tsv
 	@mkdir -p $(@D)
-	awk -F '\t' '!/^#/ { printf "\t{\"%s\", \"%s\", {\"%s\", \"%s\"}},\n", $$1, $$2, $$3, $$4 }' $< >$@
+	awk -F '\t' '!/^#/ { printf "\t{\"%s\", \"%s\", {\"%s\", \"%s\"}, \"%s\"},\n", $$1, $$2, $$3, $$4, $$5 }' $< >$@
 $(BUILD)/tables/lang/things.inc: libcommon/lang/things.tsv
 	@mkdir -p $(@D)
 	awk -F '\t' '{ n = split($$1, name, ", "); for (i = 1; i <= n; i++) printf "\t{\"%s\", %d},\n", name[i], NR - 1 }' $< | LC_ALL=C sort -t '"' -k 2,2 -k 3,3V -u >$@

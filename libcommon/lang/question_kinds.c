@@ -8,7 +8,7 @@
 #include <string.h>
 
 static const struct {
-	const char *kind, *said, *asks[2];
+	const char *kind, *said, *asks[2], *how;
 } rows[] = {
 #include "lang/question_kinds.inc"
 };
@@ -97,25 +97,26 @@ static int is_viewer(const struct tokens *t, struct capture of)
 	return tokens_class(t, of.end - 1) == CLOSED_PRONOUN || tokens_class(t, of.end - 1) == CLOSED_NUMBER;
 }
 
-/* What a row's words say of how many; n: its number. */
-static void take_numbers(struct question_asked *q, const char *said, int n)
+/* What a row asks of a number, n, of things, and by what it compares. */
+static void take_how(struct question_asked *q, size_t row, int n)
 {
-	const int is_fewer = strstr(said, "fewer") != NULL;
+#define IS(word) (!strcmp(rows[row].how, word))
+	const int is_fewer = IS("fewer");
 
-	q->is_denied = q->kind == QUESTION_THERE &&
-		       (strstr(said, " no ") || strstr(said, "nothing") || strstr(said, "none"));
-	if (strchr(said, '#')) {
-		q->most = is_fewer ? n - 1 : strstr(said, "exactly") || strstr(said, "at most") ? n : 0;
-		q->least = is_fewer || strstr(said, "at most") ? 0 : n + (strstr(said, "more") != NULL);
+	q->is_denied = IS("none");
+	if (IS("near"))
+		q->relation = PARSE_NEAR;
+	if (IS("above"))
+		q->relation = PARSE_ABOVE;
+	if (strchr(rows[row].said, '#')) {
+		q->most = is_fewer ? n - 1 : IS("exactly") || IS("most") ? n : 0;
+		q->least = is_fewer || IS("most") ? 0 : n + IS("more");
+	} else {
+		q->least = q->kind == QUESTION_TALLY	  ? !IS("enough")
+			   : q->kind == QUESTION_MAJORITY ? (is_fewer ? -1 : 1)
+							  : IS("kinds") || IS("only");
 	}
-	if (q->kind == QUESTION_NUMBER)
-		q->least = strstr(said, "kinds") != NULL;
-	if (q->kind == QUESTION_WHETHER)
-		q->least = strstr(said, "only") != NULL;
-	if (q->kind == QUESTION_TALLY)
-		q->least = !strstr(said, "enough");
-	if (q->kind == QUESTION_MAJORITY)
-		q->least = is_fewer ? -1 : 1;
+#undef IS
 }
 
 /* Where a place's thing begins: at "the mug" of "to the right of the mug". */
@@ -177,11 +178,7 @@ static void take(struct question_asked *q, size_t row, const struct matching *m,
 			  (q->relation == PARSE_NEAR || q->relation == PARSE_FAR);
 	if (!word.end && (q->kind == QUESTION_COMPARE || q->kind == QUESTION_SAME))
 		q->relation = relation_of_noun(m->tokens);
-	if (strstr(rows[row].said, "nearer|closer A"))
-		q->relation = PARSE_NEAR;
-	if (strstr(rows[row].said, "far above|"))
-		q->relation = PARSE_ABOVE;
-	take_numbers(q, rows[row].said,
+	take_how(q, row,
 		tokens_is(m->tokens, word.begin, "one") ? 1
 		: closed < 0				? 0
 							: closed_words[closed].value);
