@@ -283,7 +283,10 @@ static void judge_predication(struct meaning *m, int phrase, const struct parse_
 	/* nothing is beside what is not here: a denial of it is true, and of "all that is on the sill"
 	 * nothing is known */
 	const int is_all = f->count != PARSE_ONE && head < 0;
-	const double unknown = c->negated || is_all ? 0 : UNKNOWN_RELATION;
+	const double unknown = c->negated || is_all
+				       ? 0
+				       : UNKNOWN_RELATION * (1 - (f->count == PARSE_ONE) * UNSAID_RELATION *
+									    largest(said, n));
 	double *elsewhere = m->scratch + 8 * n;
 	find_elsewhere(m, c, fit, elsewhere);
 	for (size_t o = 0; o < n; o++)

@@ -286,14 +286,18 @@ void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, i
 {
 	const struct parse_word *word = &s->parse->words[w];
 	const size_t width = (size_t)v->lifted->width;
+	struct naming known = {0};
 
 	vocabulary_word_vector(v, word, s->vectors, v->word);
+	if (v->has_knowledge)
+		naming_of_word(&known, word->lemma);
 	memset(match, 0, v->lifted->objects * sizeof *match);
 	for (size_t i = 0; i < v->n && v->has_said; i++) {
 		const struct vocabulary_item *item = &v->items[i];
 		if (item->role != VOCABULARY_ANCHOR || (says_place(item) && place == PARSE_OTHER))
 			continue;
 		double x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
+		x = fmax(x, knowledge(v, &known, item->kind, 0));
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
 		x *= says_place(item) && item->relation != place ? OTHER_PLACE : 1;
 		match[item->object] = fmax(match[item->object], x);

@@ -113,7 +113,9 @@ void vocabulary_at(struct vocabulary *v, const struct vocabulary_sentence *s, in
 			    1U << PARSE_BELOW | 1U << PARSE_FRONT | 1U << PARSE_BEHIND | 1U << PARSE_LEFT |
 			    1U << PARSE_RIGHT | 1U << PARSE_BETWEEN;
 	const char *lemma = s->parse->words[w].lemma;
+	struct naming known;
 
+	naming_of_word(&known, lemma);
 	for (size_t o = 0; o < v->lifted->objects; o++)
 		match[o] = v->has_names && v->has_said &&
 			   vocabulary_in_name(lemma, v->lifted->names[o]) == 1 && wordnet_is_noun(lemma) &&
@@ -121,7 +123,9 @@ void vocabulary_at(struct vocabulary *v, const struct vocabulary_sentence *s, in
 	for (size_t i = 0; i < v->n && v->has_said; i++) {
 		const struct vocabulary_item *item = &v->items[i];
 		if (item->role == VOCABULARY_ANCHOR && at >> item->relation & 1 &&
-			!strcmp(lemma, item->lemma))
+			(!strcmp(lemma, item->lemma) ||
+				(v->has_knowledge &&
+					naming_fits(&known, &v->kinds[item->kind].naming, 0) >= 0.5)))
 			match[item->object] = 1;
 	}
 }
