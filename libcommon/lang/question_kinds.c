@@ -228,6 +228,27 @@ static void leave_fillers(struct tokens *t)
 	t->n = n;
 }
 
+/* Whether a question that is of no row wants yes or no: "might something pink be behind it?", "mum, did you
+ * spot a spoon?", but not "could you show me the spoon?" */
+static int wants_yes(const struct tokens *t, const char *text)
+{
+	int i = 0;
+
+	while (i < t->n && i < 3 && !question_is_break(t, text, i + 1 < t->n ? i + 1 : i))
+		i++;
+	const int after = i < 3 && i + 2 < t->n ? i + 1 : 0;
+	for (i = 0; i <= after; i += after ? after : 1) {
+		const int class = tokens_class(t, i);
+		const int is_asked = tokens_class(t, i + 1) == CLOSED_PRONOUN &&
+				     (tokens_class(t, i + 2) == CLOSED_REQUEST ||
+					     tokens_is(t, i + 2, "please"));
+		if (class == CLOSED_BE || (class == CLOSED_AUXILIARY && !is_asked && !tokens_is(t, i, "let")) ||
+			(class == CLOSED_HAVE && tokens_class(t, i + 1) == CLOSED_PRONOUN))
+			return 1;
+	}
+	return 0;
+}
+
 static int find_kind(struct question_asked *q, const char *text, int way)
 {
 	struct tokens t;
@@ -256,6 +277,8 @@ static int find_kind(struct question_asked *q, const char *text, int way)
 			return 1;
 		}
 	snprintf(q->text[0], sizeof q->text[0], "%s", text);
+	if (wants_yes(&t, text))
+		q->kind = QUESTION_THERE;
 	return !way;
 }
 
