@@ -98,7 +98,11 @@ static int turn_choice(struct parse *p, struct err *e)
 	one.among = phrases[0].also;
 	one.clauses = phrases[0].clauses;
 	one.except = phrases[0].except;
+	one.ordinal = phrases[0].ordinal;
+	one.from = phrases[0].from;
 	phrases[last] = phrases[0];
+	phrases[last].ordinal = 0;
+	phrases[last].from = PARSE_OTHER;
 	phrases[last].also = phrases[last].clauses = phrases[last].except = (struct parse_list){0};
 	phrases[0] = one;
 	return parse_list_add(&phrases[0].among, last, e);

@@ -2,6 +2,7 @@
 
 #include "lang/closed.h"
 #include "lang/colours.h"
+#include "lang/question_forms.h"
 #include "lang/question_match.h"
 
 #include <stdio.h>
@@ -37,9 +38,11 @@ static void fill(char to[QUESTION_TEXT], const char *asks, const struct matching
 		if (!is)
 			continue;
 		const struct capture of = m->of[is - marks];
-		const int begin = m->tokens->word[of.begin].span.begin,
+		const int is_denied = tokens_is(m->tokens, of.begin, "n't"); /* apart from its verb */
+		const int begin = m->tokens->word[of.begin + (is_denied && of.begin + 1 < of.end)].span.begin,
 			  end = m->tokens->word[of.end - 1].span.end;
-		n += (size_t)snprintf(to + n, QUESTION_TEXT - n, "%.*s", end - begin, text + begin);
+		n += (size_t)snprintf(to + n, QUESTION_TEXT - n, "%s%.*s", is_denied ? "not " : "",
+			end - begin, text + begin);
 	}
 	to[n < QUESTION_TEXT ? n : QUESTION_TEXT - 1] = 0;
 }
@@ -212,12 +215,21 @@ static int filler_length(const struct tokens *t, int i)
 	return tokens_is(t, i, about);
 }
 
+/* "Isn't it red?" asks what "is it red?" does. */
+static int is_idle_denial(const struct tokens *t, int i)
+{
+	const int verb = tokens_class(t, 0);
+
+	return i == 1 && tokens_is(t, i, "n't") &&
+	       (verb == CLOSED_BE || verb == CLOSED_AUXILIARY || verb == CLOSED_HAVE);
+}
+
 static void leave_fillers(struct tokens *t)
 {
 	int n = 0;
 
 	for (int i = 0; i < t->n; i++) {
-		const int skip = filler_length(t, i);
+		const int skip = is_idle_denial(t, i) ? 1 : filler_length(t, i);
 		if (skip >= 3 && !i)
 			memcpy(t->word[n++].text, "so", 3);
 		if (skip)
@@ -228,42 +240,19 @@ static void leave_fillers(struct tokens *t)
 	t->n = n;
 }
 
-/* Whether a question that is of no row wants yes or no: "might something pink be behind it?", "mum, did you
- * spot a spoon?", but not "could you show me the spoon?" */
-static int wants_yes(const struct tokens *t, const char *text)
+/* The way-th way to read a question by a row: 1, 0 where there is no such way, -1 where no row fits. */
+static int find_row(struct question_asked *q, const struct tokens *t, const char *text, int way)
 {
-	int i = 0;
-
-	while (i < t->n && i < 3 && !question_is_break(t, text, i + 1 < t->n ? i + 1 : i))
-		i++;
-	const int after = i < 3 && i + 2 < t->n ? i + 1 : 0;
-	for (i = 0; i <= after; i += after ? after : 1) {
-		const int class = tokens_class(t, i);
-		const int is_asked = tokens_class(t, i + 1) == CLOSED_PRONOUN &&
-				     (tokens_class(t, i + 2) == CLOSED_REQUEST ||
-					     tokens_is(t, i + 2, "please"));
-		if (class == CLOSED_BE || (class == CLOSED_AUXILIARY && !is_asked && !tokens_is(t, i, "let")) ||
-			(class == CLOSED_HAVE && tokens_class(t, i + 1) == CLOSED_PRONOUN))
-			return 1;
-	}
-	return 0;
-}
-
-static int find_kind(struct question_asked *q, const char *text, int way)
-{
-	struct tokens t;
-	struct matching from = {.text = text, .tokens = &t};
+	struct matching from = {.text = text, .tokens = t};
+	int begins[TOKENS_MOST], n = 0; /* where a question may begin */
 
 	*q = (struct question_asked){.relation = -1};
-	tokens_take(&t, text, NULL, NULL, 0);
-	leave_fillers(&t);
-	while (from.idle_before < t.n && question_is_idle(&t, from.idle_before))
+	while (from.idle_before < t->n && question_is_idle(t, from.idle_before))
 		from.idle_before++;
-	for (from.idle_after = t.n; from.idle_after && question_is_idle(&t, from.idle_after - 1);)
+	for (from.idle_after = t->n; from.idle_after && question_is_idle(t, from.idle_after - 1);)
 		from.idle_after--;
-	int begins[TOKENS_MOST], n = 0; /* where a question may begin */
-	for (int at = 0; at < t.n; at++)
-		if (at <= from.idle_before || question_is_break(&t, text, at))
+	for (int at = 0; at < t->n; at++)
+		if (at <= from.idle_before || question_is_break(t, text, at))
 			begins[n++] = at;
 	for (size_t row = 0; row < sizeof rows / sizeof *rows; row++)
 		for (int i = 0; i < n; i++) {
@@ -276,8 +265,27 @@ static int find_kind(struct question_asked *q, const char *text, int way)
 			take(q, row, &m, text);
 			return 1;
 		}
+	return -1;
+}
+
+static int find_kind(struct question_asked *q, const char *text, int way)
+{
+	char again[QUESTION_TEXT];
+	struct tokens t;
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	leave_fillers(&t);
+	int found = find_row(q, &t, text, way);
+	if (found < 0 && question_say_again(again, sizeof again, &t, text)) {
+		text = again;
+		tokens_take(&t, text, NULL, NULL, 0);
+		found = find_row(q, &t, text, way);
+		q->about = (struct parse_span){0, 0};
+	}
+	if (found >= 0)
+		return found;
 	snprintf(q->text[0], sizeof q->text[0], "%s", text);
-	if (wants_yes(&t, text))
+	if (question_wants_yes(&t, text))
 		q->kind = QUESTION_THERE;
 	return !way;
 }

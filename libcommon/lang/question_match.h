@@ -24,5 +24,9 @@ int question_is_break(const struct tokens *t, const char *text, int at);
 /* Whether a word says nothing more of what is asked for, before it or behind it. */
 int question_is_idle(const struct tokens *t, int i);
 
+/* Whether a question that is of no row wants yes or no: "might something pink be behind it?", "mum, did you
+ * spot a spoon?", but not "could you show me the spoon?" */
+int question_wants_yes(const struct tokens *t, const char *text);
+
 /* The rest of a row from token `at` on. */
 int question_match(struct matching *m, const char *said, int at);

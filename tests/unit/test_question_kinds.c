@@ -13,6 +13,34 @@ static void is(const char *text, enum question_kind kind, const char *first, con
 		"'%s': %s, '%s', '%s'", text, question_name(q.kind), q.text[0], q.text[1]);
 }
 
+/* A number, a choice and a fact that are asked for in other words. */
+static void forms(void)
+{
+	is("Mugs: total?", QUESTION_NUMBER, "how many Mugs", "");
+	is("spoon count, please", QUESTION_NUMBER, "how many spoon", "");
+	is("what is the number of red mugs?", QUESTION_NUMBER, "red mugs", "");
+	is("Mugs on a tray. What number do you see?", QUESTION_NUMBER, "how many Mugs on a tray", "");
+	is("the mug with a number on it", QUESTION_WHICH, "the mug with a number on it", "");
+	is("the total", QUESTION_WHICH, "the total", "");
+	is("mug vs jug: who is taller?", QUESTION_COMPARE, "the mug", "the jug");
+	is("Sort the mug, the jug and the tray by height: which one is second?", QUESTION_WHICH,
+		"the second tallest of the mug, the jug and the tray", "");
+	is("smallest in width: mug, jug, tray", QUESTION_WHICH,
+		"the narrowest of the mug, the jug and the tray", "");
+	is("say who is nearer to the tray: mug or jug", QUESTION_COMPARE, "mug", "jug");
+	is("bring the mug, the jug and the tray", QUESTION_WHICH, "bring the mug, the jug and the tray", "");
+	is("there's no mug, is there?", QUESTION_THERE, "there is mug", "");
+	is("you've got a mug, haven't you?", QUESTION_THERE, "is there a mug", "");
+	is("The mug is red?", QUESTION_WHETHER, "The mug", "The mug that is red");
+	is("the mug is red", QUESTION_WHICH, "the mug is red", "");
+	is("Not one of the mugs is red: true or false?", QUESTION_THERE, "the mugs that are red", "");
+	is("isn't the mug red?", QUESTION_WHETHER, "the mug", "the mug that is red");
+	is("how many of the mugs aren't red?", QUESTION_NUMBER, "the mugs that are not red", "");
+	is("might something lie there?", QUESTION_THERE, "might something lie there?", "");
+	is("mum, did you spot a spoon?", QUESTION_THERE, "mum, did you spot a spoon?", "");
+	is("could you kindly show me the spoon?", QUESTION_WHICH, "could you kindly show me the spoon?", "");
+}
+
 static void kinds(void)
 {
 	is("the red mug", QUESTION_WHICH, "the red mug", "");
@@ -109,6 +137,7 @@ static void words(void)
 int main(void)
 {
 	kinds();
+	forms();
 	ways();
 	words();
 	return unit_end();
