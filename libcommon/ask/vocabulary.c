@@ -117,6 +117,7 @@ static int add_kind(struct vocabulary *v, const char *lemma, size_t *kind, struc
 		    e))
 		return -1;
 	struct vocabulary_kind *to = &v->kinds[v->kind_count++];
+	*to = (struct vocabulary_kind){0};
 	to->lemma = lemma;
 	to->parts.n = -1;
 	naming_of_thing(&to->naming, lemma);
@@ -234,6 +235,7 @@ static void mark_general(struct vocabulary *v)
 	for (size_t i = 0; i < v->n; i++) {
 		struct vocabulary_item *a = &v->items[i];
 		a->is_general = a->role == VOCABULARY_NOUN && closed_is(a->lemma, CLOSED_GENERIC);
+		v->kinds[a->kind].is_thing |= a->role == VOCABULARY_NOUN;
 		for (size_t k = 0; k < v->n && a->role == VOCABULARY_NOUN && !a->is_general; k++) {
 			const struct vocabulary_item *b = &v->items[k];
 			if (b->role != VOCABULARY_NOUN)
@@ -387,6 +389,8 @@ int vocabulary_make(struct vocabulary *v, const struct lifted *l, const struct p
 	if (read_names(v, e) || read_sentences(v, parser, e))
 		return -1;
 	mark_general(v);
+	for (size_t o = 0; o < l->objects; o++)
+		v->kinds[v->head_kinds[o]].is_thing = v->kinds[v->whole_kinds[o]].is_thing = 1;
 	if (find_about(v, e) || find_kin(v, e) || vocabulary_find_lines(v, parser, e))
 		return -1;
 	for (size_t r = 0; r < l->sentences; r++)

@@ -38,6 +38,7 @@ struct vocabulary_kind {
 	const char *lemma;
 	struct naming naming;
 	int finish;	    /* finish_of */
+	int is_thing;	    /* something here is called so */
 	struct parts parts; /* found when they are first asked for; n < 0 before */
 };
 

@@ -297,7 +297,8 @@ void vocabulary_has(struct vocabulary *v, const struct vocabulary_sentence *s, i
 		if (item->role != VOCABULARY_ANCHOR || (says_place(item) && place == PARSE_OTHER))
 			continue;
 		double x = worth(dot_float(v->word, v->vectors + i * width, width), NOUN_HALF, NOUN_SOFT);
-		x = fmax(x, knowledge(v, &known, item->kind, 0));
+		if (!v->kinds[item->kind].is_thing)
+			x = fmax(x, knowledge(v, &known, item->kind, 0));
 		x = !strcmp(word->lemma, item->lemma) ? 1 : x;
 		x *= says_place(item) && item->relation != place ? OTHER_PLACE : 1;
 		match[item->object] = fmax(match[item->object], x);

@@ -124,7 +124,7 @@ void vocabulary_at(struct vocabulary *v, const struct vocabulary_sentence *s, in
 		const struct vocabulary_item *item = &v->items[i];
 		if (item->role == VOCABULARY_ANCHOR && at >> item->relation & 1 &&
 			(!strcmp(lemma, item->lemma) ||
-				(v->has_knowledge &&
+				(v->has_knowledge && !v->kinds[item->kind].is_thing &&
 					naming_fits(&known, &v->kinds[item->kind].naming, 0) >= 0.5)))
 			match[item->object] = 1;
 	}

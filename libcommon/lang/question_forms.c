@@ -34,7 +34,12 @@ static int is_content(const struct tokens *t, int i)
 
 static void put(struct asked *q, const char *words)
 {
-	q->n += (size_t)snprintf(q->to + q->n, q->n < q->size ? q->size - q->n : 0, "%s", words);
+	const size_t n = strlen(words);
+
+	if (q->n + n < q->size) {
+		memcpy(q->to + q->n, words, n + 1);
+		q->n += n;
+	}
 }
 
 static void put_part(struct asked *q, struct part p)
@@ -77,8 +82,9 @@ static int is_cue(const struct asked *q, int i)
 		       !is_class(t, i + 1, CLOSED_PLACE);
 	if (tokens_is(t, i, "tot"))
 		return tokens_is(t, i + 1, "up");
-	if (!tokens_is(t, i, nouns))
-		return 0;
+	if (!tokens_is(t, i, nouns) || tokens_is(t, i + 1, "from|along") ||
+		is_class(t, i + 1, CLOSED_NUMBER) || is_class(t, i + 1, CLOSED_ORDINAL))
+		return 0; /* "count from the left", "number two" */
 	const int is_end = i + 1 == end_of(q, i) && !is_class(t, i - 1, CLOSED_DETERMINER);
 	return is_end || begin_of(q, i) == i || tokens_is(t, i - 1, "what") ||
 	       (tokens_is(t, i + 1, "of|for") && tokens_is(t, i - 1, "the|a|what|head"));
@@ -259,15 +265,16 @@ static int say_choice(struct asked *q)
 {
 	static const char order_verbs[] = "rank|order|sort|compare|arrange|put|line|list|take";
 	struct part items[ITEMS], best[ITEMS];
-	int n = 0;
+	int n = 0, is_asked = strpbrk(q->text, "?:") != NULL;
 
 	for (int at = 0; at < q->t->n; at++) {
+		is_asked |= tokens_is(q->t, at, order_verbs);
 		const int k = tokens_is(q->t, at, order_verbs) ? 0 : take_list(q, at, items);
 		if (k > n)
 			memcpy(best, items, sizeof best);
 		n = k > n ? k : n;
 	}
-	if (n < 2)
+	if (n < 2 || !is_asked)
 		return 0;
 	const struct order o = find_order(q, (struct part){best[0].begin, best[n - 1].end});
 	const int is_near = o.at >= 0 && (closed_words[q->t->word[o.at].closed].relation == PARSE_NEAR ||
@@ -337,15 +344,18 @@ static int say_statement(struct asked *q)
 	const struct tokens *t = q->t;
 	unsigned tags;
 	struct part p = find_statement(q, &tags);
-	int is_asked = tags || strchr(q->text, '?');
+	int is_told = 0, is_ours = 0, is_asked = tags || (!p.begin && p.end == t->n && strchr(q->text, '?'));
 
 	for (; p.begin < p.end && !tokens_is(t, p.begin, "there|none|not") &&
 		(tokens_is(t, p.begin, "surely|that") || question_is_idle(t, p.begin));
-		p.begin++)
-		is_asked |= tokens_is(t, p.begin, "if|whether");
+		p.begin++) {
+		is_told |= tokens_is(t, p.begin, "tell|say|know|wonder|check|see");
+		is_asked |= is_told && tokens_is(t, p.begin, "if|whether");
+		is_ours |= is_class(t, p.begin, CLOSED_PRONOUN);
+	}
 	int verb = p.begin;
 	while (verb < p.end && !is_class(t, verb, CLOSED_BE) &&
-		!(verb == p.begin && is_class(t, verb, CLOSED_HAVE)))
+		!(is_ours && verb == p.begin && is_class(t, verb, CLOSED_HAVE)))
 		verb++;
 	const int is_owned = is_class(t, verb, CLOSED_HAVE);
 	const int is_there = is_owned || tokens_is(t, verb - 1, "there");

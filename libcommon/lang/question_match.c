@@ -150,25 +150,23 @@ int question_match(struct matching *m, const char *said, int at)
 
 int question_wants_yes(const struct tokens *t, const char *text)
 {
+	static const char there[] =
+		"happen|notice|spot|detect|observe|recognise|recognize|own|have|perhaps|maybe|possibly|be";
 	int after = 0; /* what somebody is called by: "mum," */
 
 	while (after < 3 && after + 1 < t->n && !(after && question_is_break(t, text, after)))
 		after++;
 	if (!question_is_break(t, text, after))
 		after = 0;
-	for (int i = 0; i < t->n; i++)
-		if (tokens_is(t, i, "than"))
-			return 0; /* what is compared is not just there */
+	for (int i = 0; i < t->n; i++) /* what is compared, or told of further, is not just asked for */
+		if (tokens_is(t, i, "than") || (i > after && t->word[i].before == PAUSE_STOP))
+			return 0;
 	for (int turn = 0; turn < 2; turn++) {
 		const int i = turn ? after : 0, class = tokens_class(t, i);
-		const int verb = i + 2 +
-				 (tokens_class(t, i + 2) == CLOSED_ADVERB ||
-					 (i + 2 < t->n && token_ends(t->word[i + 2].text, "ly", 3)));
-		const int is_asked =
-			tokens_class(t, i + 1) == CLOSED_PRONOUN && tokens_class(t, verb) == CLOSED_REQUEST;
+		const int is_told = tokens_class(t, i + 1) == CLOSED_PRONOUN && !tokens_is(t, i + 2, there);
 		if (class == CLOSED_BE ||
 			(class == CLOSED_HAVE && tokens_class(t, i + 1) == CLOSED_PRONOUN) ||
-			(class == CLOSED_AUXILIARY && !is_asked && !tokens_is(t, i, "let")))
+			(class == CLOSED_AUXILIARY && !is_told && !tokens_is(t, i, "let")))
 			return 1;
 	}
 	return 0;
