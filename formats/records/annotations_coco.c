@@ -66,27 +66,6 @@ static int check_size(const struct reading *r, const cJSON *size, struct err *e)
 			: "");
 }
 
-/* Programs write run lengths along rows, which COCO's do not go: the object's box, [left, top, width, height]
- * or two corners, has then what the runs mark along rows, and not what they mark down columns. */
-static int check_way(const struct reading *r, const struct rle *rle, const cJSON *item, struct err *e)
-{
-	const uint32_t h = (uint32_t)r->height, w = (uint32_t)r->width;
-	size_t along = 0, down = 0;
-	double b[4];
-
-	if (json_numbers(json_get(item, "bbox"), 4, b))
-		return 0;
-	for (uint32_t i = 0, k = 0; k < rle->n; i += rle->runs[k++])
-		for (uint32_t p = i; k % 2 && p < i + rle->runs[k]; p++) {
-			along += p % w >= b[0] && p / w >= b[1] && p % w < b[0] + b[2] && p / w < b[1] + b[3];
-			down += p / h >= b[0] && p % h >= b[1] && p / h < b[0] + b[2] && p % h < b[1] + b[3];
-		}
-	if (along <= 0.9 * (double)rle_area(rle) || down >= 0.6 * (double)rle_area(rle))
-		return 0;
-	return err_file(e, r->where,
-		"its run lengths go along rows, as its 'bbox' shows; COCO's go down columns: encode the transposed mask (in NumPy order='F')");
-}
-
 static int draw_runs(struct reading *r, struct annotation *on, const cJSON *item, struct err *e)
 {
 	const cJSON *segmentation = json_get(item, "segmentation");
@@ -97,7 +76,7 @@ static int draw_runs(struct reading *r, struct annotation *on, const cJSON *item
 		return -1;
 	if (masks_take_counts(&rle, counts, r->height, r->width, r->where, e))
 		return -1;
-	return check_way(r, &rle, item, e) ? -1 : reading_unite(r, on, &rle, e);
+	return reading_unite(r, on, &rle, e);
 }
 
 /* Polygons, of which all are parts of the thing, or run lengths. */

@@ -93,6 +93,9 @@ int masks_take_counts(
 	}
 	const int bad = is_list ? rle_from_runs(mask, runs, n, height, width, e)
 				: rle_from_string(mask, counts->valuestring, height, width, e);
+	if (!bad && rle_is_by_rows(mask))
+		return err_file(e, where,
+			"its run lengths go along rows, as its shape shows; COCO's go down columns: encode the transposed mask (in NumPy order='F')");
 	return bad ? key_err(e, where, "segmentation.counts") : 0;
 }
 

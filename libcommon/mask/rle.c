@@ -242,6 +242,31 @@ size_t rle_area(const struct rle *r)
 	return area;
 }
 
+/* How many pixels differ from the one `step` positions on. */
+static size_t changes_after(const struct rle *r, size_t step)
+{
+	size_t differ = 0, at = 0, i = 0, k = 0, end = 0, far = 0;
+
+	for (; i < r->n && far <= step; far += r->runs[i++])
+		;
+	for (k = i, i = 0; at < (size_t)r->height * (size_t)r->width - step;) {
+		while (end <= at)
+			end += r->runs[i++];
+		while (far <= at + step)
+			far += r->runs[k++];
+		const size_t next = end < far - step ? end : far - step;
+		differ += (i + k) % 2 ? next - at : 0;
+		at = next;
+	}
+	return differ;
+}
+
+int rle_is_by_rows(const struct rle *r)
+{
+	return rle_area(r) >= 16 &&
+	       changes_after(r, (size_t)r->height) >= 3 * changes_after(r, (size_t)r->width);
+}
+
 /* Two masks of one size, walked together. */
 struct walk {
 	const struct rle *a, *b;

@@ -229,11 +229,14 @@ made() {
 
 @test "COCO: run lengths along rows, numbers that two have, labels with blanks, pictures without a name" {
 	jq -n '{images: [{id: 5, file_name: "view_1.png", height: 6, width: 8}], categories: [{id: 1, name: " cup "}],
-		annotations: [{image_id: 5, category_id: 1, bbox: [1, 2, 3, 3], segmentation: {size: [6, 8], counts: [17, 3, 5, 3, 5, 3, 12]}}]}' >rows.json
-	says 3 "mask-import: rows.json: annotation 0: its run lengths go along rows, as its 'bbox' shows; COCO's go down columns: encode the transposed mask (in NumPy order='F')" "$BIN/mask-import" -o none rows.json
+		annotations: [{image_id: 5, category_id: 1, segmentation: {size: [6, 8], counts: [8, 3, 3, 3, 3, 3, 25]}}]}' >columns.json
+	jq '.images[0] += {height: 12, width: 20} | .annotations[0].segmentation = {size: [12, 20], counts: [42, 4, 16, 4, 16, 4, 16, 4, 16, 4, 16, 4, 94]}' columns.json >rows.json
+	says 3 "mask-import: rows.json: annotation 0: its run lengths go along rows, as its shape shows; COCO's go down columns: encode the transposed mask (in NumPy order='F')" "$BIN/mask-import" -o none rows.json
+	jq -c '{view: "v", object: "cup", segmentation: .annotations[0].segmentation}' rows.json >rows.jsonl
+	says 3 "mask-import: rows.jsonl:1: its run lengths go along rows, as its shape shows; COCO's go down columns: encode the transposed mask (in NumPy order='F')" "$BIN/mask-import" -o none rows.jsonl
 	for box in '[1, 2, 3, 3]' '[1, 2, 4, 5]'; do
-		jq ".annotations[0] |= (.bbox = $box | .segmentation.counts = [8, 3, 3, 3, 3, 3, 25])" rows.json >columns.json
-		"$BIN/mask-import" -o made.jsonl columns.json
+		jq ".annotations[0].bbox = $box" columns.json >boxed.json
+		"$BIN/mask-import" -o made.jsonl boxed.json
 		[ "$(jq -r .object made.jsonl)" = cup ]
 	done
 	for ids in '.images[0].id = "5"' '.annotations[0].category_id = "1"' '.images[0].id = "a-b" | .annotations[0].image_id = "a-b"'; do
