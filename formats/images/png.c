@@ -7,7 +7,10 @@
 #include <setjmp.h>
 #include <sys/stat.h>
 
-enum { DEFLATE_RATIO = 1032 /* what a byte of deflate can become at most */ };
+enum {
+	DEFLATE_RATIO = 1032, /* what a byte of deflate can become at most */
+	APART = 64 /* colours of a mask that differ by more, in 8 bits, are not one painted over all of it */
+};
 
 int picture_check_size(const char *path, const char *kind, size_t width, size_t height, struct err *e)
 {
@@ -205,50 +208,70 @@ static unsigned brightness(const struct png_job *job, size_t pixel)
 	return most;
 }
 
-/* What is of a mask is at least so bright: 1, or half where values, near black and near the brightest and few
- * between, show that it was a JPEG or scaled. */
+/* What is of a mask is at least so bright: 1, or, where several values near black and near the brightest, and
+ * few between, show that it was a JPEG or scaled, half of the darkest of its bright colours. */
 static unsigned least_bright(const struct png_job *job)
 {
-	const size_t n = pixels_of(job);
-	size_t counts[4] = {0};
-	unsigned most = job->channels < 3 ? 255 : 64;
+	enum { BINS = 16 };
+	size_t counts[256] = {0}, bins[BINS] = {0}, above = 0;
+	unsigned most = job->channels < 3 ? 255 : 64, dark = 0, bright = 0, gap = 1, first;
 
-	for (size_t i = 0; i < n && job->channels >= 3; i++)
-		most = brightness(job, i) > most ? brightness(job, i) : most;
-	for (size_t i = 0; i < n; i++) {
-		const unsigned value = brightness(job, i);
-		counts[4 * value / (most + 1)] += value && value < most;
+	for (size_t i = 0, n = pixels_of(job); i < n; i++)
+		counts[brightness(job, i)]++;
+	for (unsigned v = most; v < 256; v++)
+		most = counts[v] ? v : most;
+	for (unsigned v = 1; v <= most; v++) {
+		bins[BINS * v / (most + 1)] += counts[v];
+		dark += counts[v] && v <= most / BINS;
+		bright += counts[v] && v > most - most / 8 && v < most;
 	}
-	return counts[0] && counts[3] && counts[1] + counts[2] < counts[3]
-		       ? (most + 1) / 2 << (job->depth - 8)
-		       : 1;
+	for (unsigned k = 1; k < BINS / 2; k++)
+		gap = bins[k] <= bins[gap] ? k : gap;
+	for (unsigned k = gap + 1; k < BINS; k++)
+		above += bins[k];
+	for (first = gap + 1; first < BINS && 8 * bins[first] < above;)
+		first++;
+	return dark < 3 || !bright || 8 * bins[gap] > above || first == BINS
+		       ? 1
+		       : (2 * first + 1) * (most + 1) / BINS / 4 << (job->depth - 8);
 }
 
 int png_take_mask(const char *path, FILE *in, uint8_t **pixels, int *height, int *width, struct err *e)
 {
 	struct png_job job = {.e = e};
 	uint8_t *mask = read_pixels(&job, path, in, 1);
+	const size_t n = mask ? pixels_of(&job) : 0;
 	size_t marked = 0, cleared = 0;
+	int differ = 0;
 
 	if (mask) {
 		const int colours = job.channels - !(job.channels % 2);
-		const unsigned least = least_alpha(&job);
+		const unsigned least = least_alpha(&job), apart = (unsigned)APART << (job.depth - 8);
 		const unsigned bright = least_bright(&job);
-		for (size_t i = 0, n = pixels_of(&job); i < n; i++) {
+		for (size_t i = 0; i < n; i++) {
 			const int clear = is_clear(&job, i, least);
-			for (int k = 0; k < colours && !clear; k++)
-				mask[i] |= sample(&job, i, k) >= bright;
+			for (int k = 0; k < colours && !clear; k++) {
+				const unsigned value = sample(&job, i, k), first = sample(&job, 0, k);
+				mask[i] |= value >= bright;
+				differ |= value > first + apart || first > value + apart;
+			}
 			cleared += (size_t)clear;
 			marked += mask[i];
 		}
 		/* black on nothing: alpha is the mask */
-		for (size_t i = 0, n = pixels_of(&job); i < n && cleared && !marked; i++)
+		for (size_t i = 0; i < n && cleared && !marked; i++)
 			mask[i] = !is_clear(&job, i, least);
-		*pixels = mask;
 		*height = job.height;
 		*width = job.width;
 	}
 	release(&job);
+	if (differ && marked == n) {
+		err_file(e, job.path,
+			"no pixel is black or transparent, so that all would be of the thing: paint black what is not");
+		free(mask);
+		mask = NULL;
+	}
+	*pixels = mask;
 	return mask ? 0 : -1;
 }
 

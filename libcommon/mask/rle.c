@@ -263,8 +263,9 @@ static size_t changes_after(const struct rle *r, size_t step)
 
 int rle_is_by_rows(const struct rle *r)
 {
-	return rle_area(r) >= 16 &&
-	       changes_after(r, (size_t)r->height) >= 3 * changes_after(r, (size_t)r->width);
+	const size_t down = changes_after(r, (size_t)r->height), along = changes_after(r, (size_t)r->width);
+
+	return rle_area(r) >= 16 && along && down >= 3 * along;
 }
 
 /* Two masks of one size, walked together. */

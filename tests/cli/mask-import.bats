@@ -278,11 +278,16 @@ made() {
 @test "masks that were JPEGs, and black ones on nothing" {
 	kind=0800 picture grey.png '00 03 05 fb' '02 00 fe ff'
 	kind=0806 picture black.png '00000000 00000000 00000000 000000ff' '00000000 00000000 000000ff 000000ff'
-	for file in grey black; do
+	picture two.png '000000 000300 050000 b40000' '000200 000000 fe00fe 00ffff'
+	for file in grey black two; do
 		echo "{\"view\":\"v\",\"object\":\"cup\",\"path\":\"$file.png\"}" >$file.jsonl
 		"$BIN/mask-import" -o made.jsonl $file.jsonl
 		[ "$(jq -c .segmentation made.jsonl)" = '{"size":[2,4],"counts":"53"}' ]
 	done
+	picture two.png 'ff0000 ffffff' 'fff0f0 ffffff'
+	says 3 "mask-import: ./two.png: no pixel is black or transparent, so that all would be of the thing: paint black what is not" "$BIN/mask-import" two.jsonl
+	picture two.png 'f0fff0 ffffff' 'fff0f0 ffffff'
+	"$BIN/mask-import" two.jsonl | jq -e '.segmentation.counts == "04"'
 }
 
 # coco SEGMENTATION: a COCO file of one label in a picture of 20 by 12 pixels, on stdout.
