@@ -24,7 +24,7 @@ static int answer(struct serving *s, const cJSON *body, struct serving_reply *to
 	return serving_answer(s, what, body, 1, to, e);
 }
 
-static void answer_line(struct serving *s, const char *line, size_t length, FILE *out)
+static void answer_line(struct serving *s, char *line, size_t length, FILE *out)
 {
 	struct serving_reply reply = {0};
 	struct err e;

@@ -25,15 +25,67 @@ const char *json_find_twice(const cJSON *value)
 	return NULL;
 }
 
-cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e)
+/* The next character that is in no text, from one that is not. */
+static char *skip_text(char *at)
+{
+	for (; *at == '"'; at += *at != 0)
+		for (at++; *at && *at != '"'; at++)
+			at += *at == '\\' && at[1];
+	return at;
+}
+
+cJSON *json_take(char *text, const char **stop)
+{
+	static const char *const words[] = {"NaN", "Infinity", "-Infinity"};
+	cJSON *value = cJSON_ParseWithOpts(text, stop, 1);
+
+	if (value || !strpbrk(text, "NI"))
+		return value;
+	for (char *at = skip_text(text); *at; at = skip_text(at + 1))
+		for (int k = 0; k < 3; k++) {
+			const size_t n = strlen(words[k]);
+			if (strncmp(at, words[k], n) != 0)
+				continue;
+			at[0] = at[n - 1] = '"';
+			at += n - 1;
+		}
+	return cJSON_ParseWithOpts(text, stop, 1);
+}
+
+/* The character before one, but for blanks; NUL at the beginning. */
+static char character_before(const char *text, const char *at)
+{
+	do
+		at--;
+	while (at >= text && strchr(" \t\r\n", *at));
+	return (char)(at >= text ? *at : 0);
+}
+
+const char *json_hint(const char *text, const char *stop)
+{
+	/* cJSON stops at what is wrong, or one character behind it; of a text that has no end at its first */
+	const int is_behind = stop > text && strchr("]}'", stop[-1]) != NULL;
+	const char *at = stop - is_behind;
+
+	if ((*stop == ',' && stop[1]) || (*at && strchr("]}", *at) && character_before(text, at) == ','))
+		return ": a comma too many";
+	if (!*at || (at > text && at[-1] == '"'))
+		return "";
+	return *at == '/' || *at == '#' ? ": JSON has no comments"
+	       : strchr("'TFN", *at)	? ": it is as Python prints it: json.dump writes JSON"
+					: "";
+}
+
+cJSON *json_parse(char *text, size_t len, const char *name, struct err *e)
 {
 	const char *stop = NULL;
 	cJSON *value = NULL;
 
 	if (strlen(text) != len)
 		err_file(e, name, "not JSON: a NUL byte at offset %zu", strlen(text));
-	else if (!(value = cJSON_ParseWithOpts(text, &stop, 1)))
-		err_file(e, name, "not JSON at offset %td", stop ? stop - text : (ptrdiff_t)0);
+	else if (!(value = json_take(text, &stop)))
+		err_file(e, name, "not JSON at offset %td%s", stop ? stop - text : (ptrdiff_t)0,
+			json_hint(text, stop ? stop : text));
 	const char *twice = json_find_twice(value);
 	const int has_nul = value && json_has_nul(text);
 	if (!twice && !has_nul)

@@ -8,8 +8,17 @@
 /* The value in a file ("-" is stdin): cJSON_Delete it. NULL with *e set ("path: not JSON at offset N"). */
 cJSON *json_read(const char *path, struct err *e);
 
-/* The same of `len` bytes in memory and a NUL after them; name is for messages. */
-cJSON *json_parse(const char *text, size_t len, const char *name, struct err *e);
+/* The same of `len` bytes in memory and a NUL after them, which json_take may change; name is for messages.
+ */
+cJSON *json_parse(char *text, size_t len, const char *name, struct err *e);
+
+/* cJSON_ParseWithOpts of all of a text, in which NaN, Infinity and -Infinity, as Python's json writes numbers
+ * that are none, become texts of their length: what needs a number there says so, other keys may have them.
+ * NULL with *stop where it is no JSON. */
+cJSON *json_take(char *text, const char **stop);
+
+/* What is wrong there, ": a comma too many", or "". */
+const char *json_hint(const char *text, const char *stop);
 
 /* Of a local, where its block is left: SCOPED_BY(json_release) cJSON *root = json_read(...). */
 static inline void json_release(cJSON **value)

@@ -127,8 +127,19 @@ static int check_foreign(const struct jsonl *j, const cJSON *first, struct err *
 {
 	struct err ignored;
 	SCOPED_BY(json_release) cJSON *whole = first ? NULL : json_read(j->path, &ignored);
+	const cJSON *root = first ? first : whole;
+	const int is_list = cJSON_IsArray(root);
 
-	return foreign_json(first ? first : whole, j->path, e);
+	if (!root || foreign_json(root, j->path, e))
+		return root ? -1 : 0;
+	if (!is_list && root == first)
+		return 0;
+	return err_file(e, j->path, "%s, not one on each line: 'jq %s %s' writes it so",
+		is_list ? "a list" : "an object over several lines",
+		cJSON_IsString(root->child) && is_list ? "-r .[]"
+		: is_list			       ? "-c .[]"
+						       : "-c .",
+		j->path);
 }
 
 int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
@@ -140,7 +151,7 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 		return (int)len;
 	const int is_first = !j->records++;
 	snprintf(j->where, sizeof j->where, "%s:%ld", j->path, j->line_number);
-	*object = cJSON_ParseWithOpts(j->line, &stop, 1);
+	*object = json_take(j->line, &stop);
 	const int is_cut = json_has_nul(j->line);
 	const char *twice = json_find_twice(*object);
 	if (twice)
@@ -148,7 +159,8 @@ int jsonl_next(struct jsonl *j, cJSON **object, struct err *e)
 	else if (is_first && check_foreign(j, *object, e))
 		len = -1;
 	else if (!*object)
-		len = jsonl_err(j, e, "not JSON at column %td", stop ? stop - j->line + 1 : 1);
+		len = jsonl_err(j, e, "not JSON at column %td%s", stop ? stop - j->line + 1 : 1,
+			json_hint(j->line, stop ? stop : j->line));
 	else if (is_cut || !cJSON_IsObject(*object))
 		len = jsonl_err(j, e, is_cut ? "a NUL character (\\u0000) in a string" : "not a JSON object");
 	if (len > 0)

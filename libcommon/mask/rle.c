@@ -265,7 +265,7 @@ int rle_is_by_rows(const struct rle *r)
 {
 	const size_t down = changes_after(r, (size_t)r->height), along = changes_after(r, (size_t)r->width);
 
-	return rle_area(r) >= 16 && along && down >= 3 * along;
+	return rle_area(r) >= 16 && rle_area(r) >= r->n && along && down >= 3 * along;
 }
 
 /* Two masks of one size, walked together. */

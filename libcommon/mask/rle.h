@@ -35,7 +35,7 @@ char *rle_to_string(const struct rle *r, struct err *e);
 
 size_t rle_area(const struct rle *r);
 /* Whether runs that were read as COCO's look as if they went along rows: so taken, three times fewer pixels
- * differ from the next one across the runs. Of 16 pixels and more. */
+ * differ from the next one across the runs. Of 16 pixels and more, two and more in a run. */
 int rle_is_by_rows(const struct rle *r);
 /* |a and b|; both must have the same size. */
 size_t rle_intersection(const struct rle *a, const struct rle *b);

@@ -173,9 +173,9 @@ refused() {
 	says 3 "pseudomask-select: f.json: cameras of 3DGS: gs-import --cameras reads them" "$BIN/pseudomask-select" -o out f.json
 	# of JSON that nobody knows, what is wrong with it
 	echo '[1]' >f.json
-	says 3 "pseudomask-select: f.json:1: not a JSON object" "$BIN/pseudomask-select" -o out f.json
+	says 3 "pseudomask-select: f.json: a list, not one on each line: 'jq -c .[] f.json' writes it so" "$BIN/pseudomask-select" -o out f.json
 	printf '{\n"a": 1}\n' >f.json
-	says 3 "pseudomask-select: f.json:1: not JSON at column 3" "$BIN/pseudomask-select" -o out f.json
+	says 3 "pseudomask-select: f.json: an object over several lines, not one on each line: 'jq -c . f.json' writes it so" "$BIN/pseudomask-select" -o out f.json
 }
 
 @test "Blender's transforms do not have the size of the photographs" {

@@ -69,8 +69,15 @@ not() { ! "$@"; }
 	printf '%s\n%s %s\n' "$one" "$two" "$two" >x
 	says 1 "x:2: not JSON at column 46" "$BIN/gs-check" x
 	printf '{"ref":"r1",\n"object":"cup"}\n' >x
-	"$BIN/gs-check" x >out && return 1
-	grep -E '^x:1: not JSON at column 1[0-9]$' out
+	says 1 "x: an object over several lines, not one on each line: 'jq -c . x' writes it so" "$BIN/gs-check" x
+	printf '%s,\n' "$one" "$two" >x
+	says 1 "x:1: not JSON at column $((${#one} + 1)): a comma too many" "$BIN/gs-check" x
+	printf "%s\n{'ref':'r2'}\n" "$one" >x
+	says 1 "x:2: not JSON at column 3: it is as Python prints it: json.dump writes JSON" "$BIN/gs-check" x
+	printf '%s\n{"ref":"r2","object":"cup","text":"a NaN","x":NaN,"y":[-Infinity, Infinity]}\n' "$one" >x
+	says 0 "x: $fine" "$BIN/gs-check" x
+	printf '{"view":"v","object":"cup","score":NaN,"path":"x"}\n' >x
+	says 1 "x:1: key 'score' is not a number" "$BIN/gs-check" x
 }
 
 @test "JSON that is no object" {
