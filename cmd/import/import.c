@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/path.h"
 #include "cmd/import/frames.h"
 #include "cmd/import/photographs.h"
 #include "formats/splats/anysplats.h"
@@ -21,26 +22,65 @@
 static const char every[] = "every:";
 
 /* The camera file in a folder: the folder itself where it is a COLMAP model, else the first there is of
- * cameras.json, sparse/0, sparse, transforms.json, 0, transforms_train.json. free() it. NULL with *e
- * (ERR_FORMAT) without. */
-static char *find_cameras_in(const char *dir, struct err *e)
+ * cameras.json, sparse/0, sparse, transforms.json, 0, transforms_train.json, in any case of letters. free()
+ * it. NULL without, or with *e. */
+static char *find_place(const char *dir, struct err *e)
 {
 	static const char *const places[] = {
 		"cameras.json", "sparse/0", "sparse", "transforms.json", "0", "transforms_train.json"};
 
+	e->code = ERR_NONE;
 	if (colmap_is_model(dir))
 		return mem_strdup(dir, e);
 	for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
-		char *path = file_join(dir, places[i], "", e);
-		if (!path)
-			return NULL;
-		if (strstr(places[i], ".json") ? file_exists(path) : colmap_is_model(path))
+		char *path = path_alike(dir, places[i], e);
+		if (!path || (strstr(places[i], ".json") ? file_exists(path) : colmap_is_model(path)))
 			return path;
 		free(path);
 	}
-	err_set(e, ERR_FORMAT,
-		"%s: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin, in small letters), cameras.json, sparse/0, sparse or transforms.json",
-		dir);
+	return NULL;
+}
+
+/* Those of a folder, or of the first two folders in it that have some, so many folders deep. */
+static int find_deep(const char *dir, int depth, char *found[2], struct err *e)
+{
+	char *here = find_place(dir, e);
+	DIR *listed = here || e->code || depth == 0 ? NULL : opendir(dir);
+	int bad = e->code;
+
+	if (here)
+		found[found[0] != NULL] = here;
+	for (struct dirent *d = listed ? readdir(listed) : NULL; d && !bad && !found[1];
+		d = readdir(listed)) {
+		SCOPED char *path = *d->d_name == '.' ? NULL : file_join(dir, d->d_name, "", e);
+		bad = path && file_is_dir(path) && find_deep(path, depth - 1, found, e);
+	}
+	if (listed)
+		closedir(listed);
+	return bad ? -1 : 0;
+}
+
+/* How deep: a zip's own folder, a program's in it, and a model's name. */
+enum { DEPTH = 3 };
+
+/* The one camera file in a folder, so many folders deep, or NULL with *e (ERR_FORMAT). */
+static char *find_cameras_in(const char *dir, int depth, struct err *e)
+{
+	char *found[2] = {NULL, NULL};
+
+	if (!find_deep(dir, depth, found, e)) {
+		if (found[0] && !found[1])
+			return found[0];
+		if (found[1])
+			err_set(e, ERR_FORMAT,
+				"%s: cameras in several of its folders, as %s and %s: name one", dir,
+				found[0], found[1]);
+		else
+			err_set(e, ERR_FORMAT,
+				"%s: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin), cameras.json, sparse/0, sparse or transforms.json",
+				dir);
+	}
+	mem_free_all(found[0], found[1]);
 	return NULL;
 }
 
@@ -114,13 +154,13 @@ static int split_names(struct cameras *c, const char *test_views, struct err *e)
 static char *find_beside(const char *splats, struct err *e)
 {
 	SCOPED char *dir = file_dir(splats, e);
-	char *found = dir ? find_cameras_in(dir, e) : NULL;
+	char *found = dir ? find_cameras_in(dir, 0, e) : NULL;
 	const char *slash = dir ? strrchr(dir, '/') : NULL;
 
 	if (dir && !found && !strncmp(slash ? slash + 1 : dir, "iteration_", 10)) {
 		struct err ignored;
 		SCOPED char *model = file_join(dir, "../..", "", e);
-		found = model ? find_cameras_in(model, &ignored) : NULL;
+		found = model ? find_cameras_in(model, 0, &ignored) : NULL;
 	}
 	return found;
 }
@@ -193,7 +233,8 @@ char *import_find_cameras(const struct import_options *o, struct err *e)
 	if (check_images(o->images, e) || check_splats(o->splats, e))
 		return NULL;
 	if (o->cameras)
-		return file_is_dir(o->cameras) ? find_cameras_in(o->cameras, e) : mem_strdup(o->cameras, e);
+		return file_is_dir(o->cameras) ? find_cameras_in(o->cameras, DEPTH, e)
+					       : mem_strdup(o->cameras, e);
 	char *found = find_beside(o->splats, e);
 	if (!found && e->code == ERR_FORMAT) {
 		const struct err reason = *e;

@@ -10,10 +10,11 @@
 #include <dirent.h>
 #include <strings.h>
 
-/* The path of a file that exists, or NULL. *e is set only when memory is out. */
+/* The path of a file that exists, whatever the case of its letters: cameras that were made where case does
+ * not count say IMG_1.JPG of IMG_1.jpg. NULL where there is none. *e is set only when memory is out. */
 static char *try_file(const char *dir, const char *name, struct err *e)
 {
-	char *path = file_join(dir, name, "", e);
+	char *path = path_alike(dir, name, e);
 
 	if (path && file_exists(path) && !file_is_dir(path))
 		return path;
@@ -21,30 +22,26 @@ static char *try_file(const char *dir, const char *name, struct err *e)
 	return NULL;
 }
 
-/* The one file of that name in other letters, else the one of that name with another ending: cameras that
- * were made where case does not count say IMG_1.JPG of IMG_1.jpg. NULL where none or several are, or with *e.
- */
-static char *find_alike(const char *dir, const char *name, struct err *e)
+/* The one file of that name with another ending. NULL where none or several are, or with *e. */
+static char *find_ending(const char *dir, const char *name, struct err *e)
 {
 	const char *base = view_base(name);
 	const size_t stem = view_stem(base);
-	size_t count[2] = {0};
-	char *found[2] = {0};
+	size_t count = 0;
+	char *found = NULL;
 	SCOPED char *path = file_join(dir, name, "", e), *folder = path ? file_dir(path, e) : NULL;
 	DIR *listed = folder ? opendir(folder) : NULL;
 
 	for (struct dirent *d = listed ? readdir(listed) : NULL; d; d = readdir(listed)) {
-		const int other = strcasecmp(d->d_name, base) != 0;
 		if (strncasecmp(d->d_name, base, stem) != 0 || view_stem(d->d_name) != stem ||
-			(other && !d->d_name[stem]))
+			!d->d_name[stem])
 			continue;
-		free(found[other]);
-		found[other] = count[other]++ ? NULL : file_join(folder, d->d_name, "", e);
+		free(found);
+		found = count++ ? NULL : file_join(folder, d->d_name, "", e);
 	}
 	if (listed)
 		closedir(listed);
-	free(found[!count[0] ? 0 : 1]);
-	return found[!count[0]];
+	return found;
 }
 
 /* The folder is the user's, the name another program's: it cannot lead out of the folder. */
@@ -55,7 +52,7 @@ static char *find_image(const char *dir, const char *image, struct err *e)
 
 	for (int i = 0; decomposed && !path && i < 4; i++) {
 		const char *name = i % 2 ? decomposed : image, *base = view_base(name);
-		char *(*find)(const char *, const char *, struct err *) = i < 2 ? try_file : find_alike;
+		char *(*find)(const char *, const char *, struct err *) = i < 2 ? try_file : find_ending;
 		if (i % 2 && !strcmp(decomposed, image))
 			continue;
 		path = path_leaves(image) ? NULL : find(dir, name, e);

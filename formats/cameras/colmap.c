@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/little.h"
 #include "base/mem.h"
+#include "base/path.h"
 #include "geom/lens.h"
 #include "geom/views.h"
 
@@ -195,11 +196,20 @@ static int read_images_binary(struct cameras *c, const struct colmap_entries *al
 	return check_end(in, e);
 }
 
+/* The path of a part, whatever the case of its letters. */
+static char *part_of(const char *dir, const char *name, const char *suffix, struct err *e)
+{
+	char file[16];
+
+	snprintf(file, sizeof file, "%s%s", name, suffix);
+	return path_alike(dir, file, e);
+}
+
 static int is_pair(const char *dir, const char *suffix)
 {
 	struct err ignored;
-	SCOPED char *a = file_join(dir, "cameras", suffix, &ignored),
-		    *b = file_join(dir, "images", suffix, &ignored);
+	SCOPED char *a = part_of(dir, "cameras", suffix, &ignored),
+		    *b = part_of(dir, "images", suffix, &ignored);
 
 	return a && b && file_exists(a) && file_exists(b);
 }
@@ -224,7 +234,7 @@ static int read_binary(
 int colmap_read(struct cameras *c, const char *dir, struct err *e)
 {
 	const char *suffix = is_pair(dir, ".bin") ? ".bin" : ".txt";
-	char *cameras = file_join(dir, "cameras", suffix, e), *images = file_join(dir, "images", suffix, e);
+	char *cameras = part_of(dir, "cameras", suffix, e), *images = part_of(dir, "images", suffix, e);
 	struct colmap_entries all = {0};
 	int bad = -1;
 
@@ -295,7 +305,7 @@ int colmap_points_read(struct colmap_points *p, const char *dir, struct err *e)
 
 	*p = (struct colmap_points){0};
 	for (int i = 0; i < 2 && !bad && !p->n; i++) {
-		SCOPED char *path = file_join(dir, "points3D", suffixes[i], e);
+		SCOPED char *path = part_of(dir, "points3D", suffixes[i], e);
 		bad = path ? 0 : -1;
 		if (path && file_exists(path))
 			bad = i ? colmap_read_points_text(p, path, e) : read_points_binary(p, path, e);

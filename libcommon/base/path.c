@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <limits.h>
 #include <stdio.h>
@@ -61,6 +62,27 @@ char *path_relative(const char *dir, const char *target, struct err *e)
 	}
 	SCOPED char *folder = real_folder(target, e);
 	return folder ? relative(from, folder, slash ? slash + 1 : target, e) : NULL;
+}
+
+char *path_alike(const char *dir, const char *name, struct err *e)
+{
+	const size_t n = strcspn(name, "/"), rest = n + strspn(name + n, "/");
+	char *path = file_join(dir, name, "", e);
+	DIR *listed = path && !file_exists(path) && n ? opendir(dir) : NULL;
+	SCOPED char *found = NULL;
+	size_t count = 0;
+
+	for (struct dirent *d = listed ? readdir(listed) : NULL; d; d = readdir(listed))
+		if (strlen(d->d_name) == n && !strncasecmp(d->d_name, name, n)) {
+			free(found);
+			found = count++ ? NULL : file_join(dir, d->d_name, "", e);
+		}
+	if (listed)
+		closedir(listed);
+	if (!found)
+		return path;
+	free(path);
+	return name[rest] ? path_alike(found, name + rest, e) : mem_strdup(found, e);
 }
 
 const char *path_last(const char *path, int *length)

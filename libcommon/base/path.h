@@ -7,6 +7,10 @@
  * the folders are followed, that of the target's last part is not. free() it; NULL with *e set. */
 char *path_relative(const char *dir, const char *target, struct err *e);
 
+/* dir/name where that exists, else with each part of name in the letters of the one file or folder that
+ * differs from it in case alone. free() it; NULL with *e set when memory is out. */
+char *path_alike(const char *dir, const char *name, struct err *e);
+
 /* The last part of a path, which may end in slashes: where it begins, and its length without them. */
 const char *path_last(const char *path, int *length);
 

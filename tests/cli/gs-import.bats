@@ -68,12 +68,12 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model s.ply
 @test "cameras that are missing" {
 	says 4 "gs-import: none: No such file or directory" "$BIN/gs-import" --cameras none -o scene s.ply
 	mkdir empty
-	says 3 "gs-import: empty: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin, in small letters), cameras.json, sparse/0, sparse or transforms.json" \
+	says 3 "gs-import: empty: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin), cameras.json, sparse/0, sparse or transforms.json" \
 		"$BIN/gs-import" --cameras empty -o scene s.ply
-	says 2 "gs-import: --cameras is not given, and .: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin, in small letters), cameras.json, sparse/0, sparse or transforms.json
+	says 2 "gs-import: --cameras is not given, and .: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin), cameras.json, sparse/0, sparse or transforms.json
 Try 'gs-import --help'." "$BIN/gs-import" -o scene s.ply
 	rm model/images.txt
-	says 3 "gs-import: model: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin, in small letters), cameras.json, sparse/0, sparse or transforms.json" \
+	says 3 "gs-import: model: no cameras here: no COLMAP model (cameras.txt and images.txt, or .bin), cameras.json, sparse/0, sparse or transforms.json" \
 		"$BIN/gs-import" --cameras model -o scene s.ply
 	[ ! -e scene ]
 }
@@ -97,6 +97,24 @@ Try 'gs-import --help'." "$BIN/gs-import" -o scene s.ply
 	sed -i 's/a.jpg/here.jpg/' x/images.txt
 	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["b","train"]["c","train"]["here","train"]' ]
 	[ "$(views "$BIN/gs-import" --cameras x/sparse -o scene x/s.ply)" = '["b","train"]["c","train"]["sparse","train"]' ]
+}
+
+@test "cameras in other letters, and in folders of a folder, where one has some" {
+	mkdir -p a/Sparse b/top/photos b/.git/sparse
+	cp -r model a/Sparse/0
+	mv a/Sparse/0/cameras.txt a/Sparse/0/Cameras.TXT && mv a/Sparse/0/images.txt a/Sparse/0/IMAGES.txt
+	cp -r a b/top/colmap
+	for cameras in a a/Sparse/0 b b/top; do
+		[ "$(views "$BIN/gs-import" --cameras $cameras -o scene s.ply)" = '["a","train"]["b","train"]["c","train"]' ]
+	done
+	cp s.ply b
+	"$BIN/gs-import" -o none b/s.ply 2>&1 | grep -q 'no cameras here'
+	cp -r model b/top/photos
+	"$BIN/gs-import" --cameras b -o none s.ply 2>err && return 1
+	grep -qE '^gs-import: b: cameras in several of its folders, as b/top/[^ ]* and b/top/[^ ]*: name one$' err
+	touch a/Sparse/0/images.TXT # two that differ in case alone: which one?
+	"$BIN/gs-import" --cameras a -o none s.ply 2>err && return 1
+	grep -q 'no cameras here' err
 }
 
 @test "the folders of a 3DGS model" {
@@ -195,12 +213,12 @@ Try 'gs-import --help'." "$BIN/gs-import" --cameras model --test-views "every:$n
 }
 
 @test "photographs in other letters or of another ending, where one file is meant" {
-	mkdir -p photos/deep
-	: >photos/A.JPEG && : >photos/deep/B.Jpg && : >photos/deep/b.png
+	mkdir -p photos/Deep
+	: >photos/A.JPEG && : >photos/Deep/B.Jpg && : >photos/Deep/b.png
 	sed -i 's, b.jpg, deep/b.jpg,' model/images.txt
 	"$BIN/gs-import" -q --cameras model --images photos -o scene s.ply
-	[ "$(imported image | tr -d '\n')" = '["../photos/A.JPEG"]["../photos/deep/B.Jpg"][null]' ]
-	: >photos/a.png && : >photos/deep/b.JPG
+	[ "$(imported image | tr -d '\n')" = '["../photos/A.JPEG"]["../photos/Deep/B.Jpg"][null]' ]
+	: >photos/a.png && : >photos/Deep/b.JPG
 	"$BIN/gs-import" -q --cameras model --images photos -o scene s.ply
 	[ "$(imported image | tr -d '\n')" = '[null][null][null]' ]
 }
