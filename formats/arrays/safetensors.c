@@ -195,9 +195,16 @@ static int read_map(struct safetensors *st, struct err *e)
 	}
 	header_len = little_get(st->map.data, 8);
 	if (header_len > st->map.len - 8 || header_len > 100000000) {
-		err_file(e, st->path,
-			"header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
-			(unsigned long long)header_len, st->map.len);
+		size_t printed = 0;
+		while (printed < 8 && st->map.data[printed] >= '\t')
+			printed++;
+		if (printed == 8)
+			err_file(e, st->path,
+				"text, not safetensors: of sentences text-encode makes them");
+		else
+			err_file(e, st->path,
+				"header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
+				(unsigned long long)header_len, st->map.len);
 		goto fail;
 	}
 	const char *stop = NULL;

@@ -384,6 +384,8 @@ int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, str
 	if (first == 0xff)
 		return jpeg_read_rgb(name, in, rgb, height, width, e);
 	if (first != EOF)
-		return err_file(e, name, "neither PNG nor JPEG: begins with byte 0x%02x", (unsigned)first);
+		return err_file(e, name,
+			"neither PNG nor JPEG: begins with byte 0x%02x: 'mogrify -format png' makes a PNG of most pictures",
+			(unsigned)first);
 	return ferror(in) ? err_errno(e, "%s", name) : err_file(e, name, "an empty file, not an image");
 }

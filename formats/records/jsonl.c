@@ -82,6 +82,11 @@ static ssize_t read_line(struct jsonl *j, struct err *e)
 			mem_grow((void **)&j->line, &j->capacity, len + 2, 1, j->path, e))
 			return -1;
 		j->line[len++] = (char)byte;
+		if (byte == '\r') { /* without a newline after it, it ends a line by itself */
+			const int next = getc_unlocked(j->in);
+			ungetc(next, j->in);
+			byte = next == '\n' ? byte : '\n';
+		}
 	}
 	if (ferror(j->in))
 		return err_errno(e, "%s", j->path);

@@ -6,6 +6,8 @@
 #include "formats/records/json.h"
 #include "formats/records/jsonl.h"
 
+#include <strings.h>
+
 static void sentence_free(void *record)
 {
 	const struct sentence *s = record;
@@ -152,6 +154,32 @@ static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 		       : 0;
 }
 
+/* Whether a line is of a table: it has a tab, or is a head with a name for the sentences. */
+static int is_of_table(const char *line)
+{
+	static const char *const heads[] = {"text", "sentence"};
+	const int is_many = line[strcspn(line, ",;")] != 0;
+
+	for (const char *at = line; is_many && *at; at += strcspn(at, ",;"), at += *at != 0)
+		for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
+			const char *word = at + (*at == '"');
+			const size_t n = strlen(heads[i]);
+			if (!strncasecmp(word, heads[i], n) && strchr(",;\"", word[n]))
+				return 1;
+		}
+	return strchr(line, '\t') != NULL;
+}
+
+/* A line without the number before it: "12. ", "12) ", or "12" and a tab. */
+static char *skip_number(char *line)
+{
+	char *end = line + strspn(line, "0123456789");
+	const int is_marked = *end == '.' || *end == ')';
+	const size_t blanks = strspn(end + is_marked, " \t");
+
+	return end > line && blanks && (is_marked || *end == '\t') ? end + is_marked + blanks : line;
+}
+
 static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)
 {
 	size_t capacity = 0;
@@ -159,17 +187,21 @@ static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)
 	int got;
 
 	while ((got = jsonl_text(j, e)) > 0) {
+		char *line = skip_number(j->line);
+		if (is_of_table(line))
+			return err_file(e, j->path, "a table: write a sentence on each line, or JSON Lines");
 		if (mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, j->path, e))
 			return -1;
 		struct sentence *one = &s->items[s->n++];
 		*one = (struct sentence){.split = SPLIT_TEST};
-		const size_t len = strlen(j->line), bad = utf8_check(j->line, len);
+		const size_t len = strlen(line), bad = utf8_check(line, len);
 		if (bad < len)
-			return jsonl_err(j, e, "not UTF-8 at byte %zu", bad + 1);
-		utf8_plain(j->line);
+			return jsonl_err(j, e, "not UTF-8 at byte %zu: save the file as UTF-8",
+				(size_t)(line - j->line) + bad + 1);
+		utf8_plain(line);
 		snprintf(ref, sizeof ref, "%ld", j->line_number);
 		if (!(one->ref = mem_strdup(ref, e)) || !(one->object = mem_strdup("?", e)) ||
-			!(one->text = mem_strdup(j->line, e)))
+			!(one->text = mem_strdup(line, e)))
 			return -1;
 	}
 	return got;

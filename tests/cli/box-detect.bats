@@ -94,7 +94,7 @@ frame() { jq -sc '[(map(.size) | unique[]), (map(.box) | [map(.[0]) | min, (map(
 	: >empty.png
 	head -c 60 red.png >cut.png
 	{ printf 89504e470d0a1a0a; chunk IHDR "$(number 30000)$(number 30000)0802000000"; chunk IDAT 789c030000000001; } | xxd -r -p >huge.png
-	refused 3 'text.png: neither PNG nor JPEG: begins with byte 0x74' text.png
+	refused 3 "text.png: neither PNG nor JPEG: begins with byte 0x74: 'mogrify -format png' makes a PNG of most pictures" text.png
 	refused 3 'empty.png: an empty file, not an image' empty.png
 	refused 3 'huge.png: PNG: 30000x30000 pixels, more than 268435456 altogether' red.png huge.png
 	run find_in -o none red.png cut.png

@@ -451,7 +451,7 @@ Try 'gs-import --help'." "$BIN/gs-import" -o "../$(basename "$PWD")" s.ply
 	# what cannot be read is not compared, and that is said
 	for i in 0 1 2; do cp "made/images/view_00$i.png" other; done
 	for i in 3 4; do echo none >"other/view_00$i.png"; done
-	says 0 "gs-import: warning: 2 of 5 photographs are not compared with the scene: scene/../other/view_003.png: neither PNG nor JPEG: begins with byte 0x6e" \
+	says 0 "gs-import: warning: 2 of 5 photographs are not compared with the scene: scene/../other/view_003.png: neither PNG nor JPEG: begins with byte 0x6e: 'mogrify -format png' makes a PNG of most pictures" \
 		"$BIN/gs-import" --cameras made/sparse/0 --images other -o scene made/point_cloud.ply
 	# photographs that are turned against their cameras, which are turned about their axis here: by a quarter, and the first upside down
 	turned() {

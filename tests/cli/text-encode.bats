@@ -192,12 +192,19 @@ Try 'text-encode --help'." env -u XDG_CACHE_HOME -u HOME "$BIN/text-encode" -o t
 		iconv -f UTF-8 -t UTF-16 | encode - | cmp - text
 	"$BIN/gs-check" text
 	printf '\xef\xbd\x94he\xe2\x80\x89red\xe3\x80\x80cup\n\n\nthe\xc2\xa0b\xc2\xadig \xe2\x80\x8bmug\ntasse à cafe\xcc\x81' | encode - | cmp - text
+	printf '1. the red cup\r\r\r4)\tthe big mug\r7\ttasse à café' | encode - >numbers # of old programs, numbered
+	[ "$(header numbers | jq -c '.__metadata__.texts | fromjson')" = '["the red cup","the big mug","tasse à café"]' ]
 	printf 'cup\ncaf\xe9\n' >latin
-	says 3 'text-encode: latin:2: not UTF-8 at byte 4' "$BIN/text-encode" --model model -o none latin
+	says 3 'text-encode: latin:2: not UTF-8 at byte 4: save the file as UTF-8' "$BIN/text-encode" --model model -o none latin
 	printf 'cup\nc\0p\n' >nul
 	says 3 'text-encode: nul:2: a NUL byte at column 2' "$BIN/text-encode" --model model -o none nul
 	printf 'object,text\ncup,the red cup\n' >table.csv
-	says 3 'text-encode: table.csv: a table: write a sentence on each line, or JSON Lines' "$BIN/text-encode" --model model -o none table.csv
+	printf '1\tcup\tthe red cup\n' >table
+	printf 'object;"text"\ncup;the red cup\n' >table.txt
+	for file in table.csv table table.txt; do
+		says 3 "text-encode: $file: a table: write a sentence on each line, or JSON Lines" "$BIN/text-encode" --model model -o none $file
+	done
+	says 3 'text-parse: latin: text, not safetensors: of sentences text-encode makes them' "$BIN/text-parse" -o none latin
 	# what begins as JSON may is JSON
 	for first in '[' ' {' '"cup"' $'\xef\xbb\xbf{'; do
 		echo "$first" >odd
