@@ -199,8 +199,7 @@ static int read_map(struct safetensors *st, struct err *e)
 		while (printed < 8 && st->map.data[printed] >= '\t')
 			printed++;
 		if (printed == 8)
-			err_file(e, st->path,
-				"text, not safetensors: of sentences text-encode makes them");
+			err_file(e, st->path, "text, not safetensors: of sentences text-encode makes them");
 		else
 			err_file(e, st->path,
 				"header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
