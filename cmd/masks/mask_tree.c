@@ -14,7 +14,7 @@ struct walk {
 	char *classes; /* the text of classes.txt, a line each; NULL: every name is one */
 	mask_tree_put *put;
 	void *to;
-	size_t pictures;
+	size_t pictures, others, beside; /* PNGs; pictures of other kinds; those beside PNGs */
 	int is_by_thing; /* the folders are things', and pictures views'; -1 while that is looked for */
 };
 
@@ -49,8 +49,10 @@ static int walk_picture(struct walk *w, const char *path, const char *folder, co
 {
 	SCOPED char *stem = path_ends(file, ".png") ? mem_strdup(file, e) : NULL;
 
-	if (!stem)
+	if (!stem) {
+		w->others += file[view_stem(file)] && w->is_by_thing >= 0;
 		return path_ends(file, ".png") ? -1 : 0;
+	}
 	stem[strlen(stem) - 4] = 0;
 	const size_t bare = view_stem(stem);
 	if (!strncmp(folder, classes_folder, sizeof classes_folder - 1))
@@ -87,12 +89,14 @@ static int walk_folder(struct walk *w, const char *path, const char *folder, con
 			      strcmp(folder, classes_folder) != 0;
 	struct dirent **names = NULL;
 	const int n = is_beside ? 0 : list(path, &names, e);
+	const size_t pictures = w->pictures, others = w->others;
 	int bad = n < 0;
 
 	for (int i = 0; i < n && !bad; i++) {
 		SCOPED char *picture = file_join(path, names[i]->d_name, "", e);
 		bad = !picture || walk_picture(w, picture, folder, view, names[i]->d_name, e);
 	}
+	w->beside += w->pictures > pictures ? w->others - others : 0;
 	mem_free_strings((char **)names, n < 0 ? 0 : (size_t)n);
 	return bad ? -1 : 0;
 }
@@ -161,7 +165,8 @@ static int look(void *to, const char *path, const char *view, const char *name, 
 	return 0;
 }
 
-int mask_tree_each(const char *dir, const struct cameras *scene, mask_tree_put *put, void *to, struct err *e)
+int mask_tree_each(const char *dir, const struct cameras *scene, mask_tree_put *put, void *to,
+	const struct report *report, struct err *e)
 {
 	struct order order = {.scene = scene};
 	struct walk w = {.dir = dir, .put = look, .to = &order, .is_by_thing = -1};
@@ -171,11 +176,16 @@ int mask_tree_each(const char *dir, const struct cameras *scene, mask_tree_put *
 	w.put = put;
 	w.to = to;
 	bad = bad || walk_folders(&w, e);
-
+	if (w.is_by_thing)
+		report_warn(report, "%s: its folders are things and their pictures views, as their names say",
+			dir);
 	if (!bad && !w.pictures)
 		bad = err_set(e, ERR_FORMAT,
-			"%s: has no masks VIEW/NAME.png%s; give pictures of views, and labels, one by one",
-			dir, w.classes ? " of the names in classes.txt" : "");
+			"%s: has no masks VIEW/NAME.png%s%s; give pictures of views, and labels, one by one",
+			dir, w.classes ? " of the names in classes.txt" : "",
+			w.others ? ", but pictures of another kind: save masks as PNG" : "");
+	else if (w.beside)
+		report_warn(report, "%s: %zu pictures that are no PNG are left out", dir, w.beside);
 	free(w.classes);
-	return bad ? -1 : w.is_by_thing;
+	return bad ? -1 : 0;
 }

@@ -174,17 +174,6 @@ static int put_tree_mask(void *to, const char *path, const char *view, const cha
 	return 0;
 }
 
-static int put_tree(struct putting *p, const char *path, struct err *e)
-{
-	const int is_by_thing =
-		mask_tree_each(path, p->w->way == WARP_NONE ? NULL : &p->w->cameras, put_tree_mask, p, e);
-
-	if (is_by_thing > 0)
-		report_warn(p->to, "%s: its folders are things and their pictures views, as their names say",
-			path);
-	return is_by_thing < 0 ? -1 : 0;
-}
-
 static int put_any(struct putting *p, const char *path, struct err *e)
 {
 	if (path_ends(path, ".json"))
@@ -192,7 +181,8 @@ static int put_any(struct putting *p, const char *path, struct err *e)
 	if (path_ends(path, ".jsonl"))
 		return put_records(path, p->w, p->out, &p->names->written, e);
 	if (file_is_dir(path))
-		return put_tree(p, path, e);
+		return mask_tree_each(
+			path, p->w->way == WARP_NONE ? NULL : &p->w->cameras, put_tree_mask, p, p->to, e);
 	return painting_put_colours(p->names, path, p->w, p->out, p->to, e);
 }
 

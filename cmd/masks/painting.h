@@ -48,9 +48,10 @@ int painting_write(struct painting_names *names, const char *const *pictures, si
 typedef int mask_tree_put(void *to, const char *path, const char *view, const char *name, struct err *e);
 
 /* All pictures, by the names of folders and then of files; where the folder has a classes.txt, those of its
- * classes only. scene: whose views they are, or NULL. Returns 0, 1 where folders are things', or -1 with *e
- * set: ERR_FORMAT where there is no picture. */
-int mask_tree_each(const char *dir, const struct cameras *scene, mask_tree_put *put, void *to, struct err *e);
+ * classes only. scene: whose views they are, or NULL. Warns of folders that are things', and of pictures
+ * that are no PNG. Returns 0, or -1 with *e set: ERR_FORMAT where there is no picture. */
+int mask_tree_each(const char *dir, const struct cameras *scene, mask_tree_put *put, void *to,
+	const struct report *report, struct err *e);
 
 /* What the parts of cmd/masks/painting.h share: painting_colours.c has pictures of colours. */
 

@@ -65,8 +65,11 @@ static int add_name(struct painting_names *names, const struct jsonl *j, struct 
 	char fault[NAME_FAULT];
 	uint32_t colour;
 
-	for (char *quote = j->line; (quote = strchr(quote, '"'));)
-		*quote = ' ';
+	for (char *at = j->line; *at; at++) /* quotes, straight and curled */
+		if (*at == '"')
+			*at = ' ';
+		else if (!strncmp(at, "\xe2\x80\x9c", 3) || !strncmp(at, "\xe2\x80\x9d", 3))
+			at = memset(at, ' ', 3);
 	char *text = name_trim(j->line);
 	if (!*text || (*text == '#' && strchr("# \t", text[1])))
 		return 0; /* a comment */

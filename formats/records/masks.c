@@ -328,14 +328,17 @@ static int leave_out(struct masks *set, long *lines, size_t *views, const char *
 }
 
 /* Of many masks hardly half cover half of their view, unless black and white are exchanged. */
-static void warn_inverted(const struct masks *set, const char *path, const struct report *to)
+static void warn_of_areas(const struct masks *set, const char *path, const struct report *to)
 {
-	size_t large = 0;
+	size_t large = 0, empty = 0;
 
 	for (size_t i = 0; i < set->n; i++) {
 		const struct rle *rle = &set->items[i].rle;
 		large += 2 * rle_area(rle) > (size_t)rle->height * (size_t)rle->width;
+		empty += !rle_area(rle);
 	}
+	if (set->n && empty == set->n)
+		report_warn(to, "%s: none of its %zu masks has a pixel", file_name(path), set->n);
 	if (set->n >= 8 && 2 * large > set->n)
 		report_warn(to,
 			"%s: %zu of %zu masks cover more than half of their view: are they inverted, black where the thing is?",
@@ -359,7 +362,7 @@ int masks_views(struct masks *set, long *lines, const char *path, const struct c
 				cameras->views[at].width, path, lines[i], e);
 	}
 	if (views && !bad)
-		warn_inverted(set, path, to);
+		warn_of_areas(set, path, to);
 	return bad || (views && set->n && leave_out(set, lines, views, path, &names, to, e)) ? -1 : 0;
 }
 

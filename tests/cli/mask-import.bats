@@ -124,7 +124,7 @@ refuses() {
 }
 
 @test "names as tables have them: commas, quotes, three numbers, comments" {
-	for line in '#ff0000,red cup' '"#ff0000","red cup"' '#ff0000: red cup' '255,0,0,red cup' '255 0 0\tred cup\r' '# colours\n#ff0000;\xc2\xa0red cup '; do
+	for line in '#ff0000,red cup' '"#ff0000","red cup"' '#ff0000: red cup' '“#ff0000” “red cup”' '255,0,0,red cup' '255 0 0\tred cup\r' '# colours\n#ff0000;\xc2\xa0red cup '; do
 		printf "$line\n" >names
 		"$BIN/mask-import" -q --names names -o made.jsonl view_1.png
 		[ "$(jq -r .object made.jsonl)" = "red cup" ]
@@ -523,6 +523,12 @@ mask-import: warning: a.json: 2 shapes of type 'linestrip' are left out" ]
 	cp by/cup/img_001.png by/mug/img_002.jpg.png
 	says 0 "mask-import: warning: by: its folders are things and their pictures views, as their names say" "$BIN/mask-import" -o masks by
 	[ "$(jq -r '.view + " " + .object' masks | tr '\n' ';')" = "img_001 cup;img_002 mug;" ]
+	touch by/cup/img_003.jpg by/v/img_003.jpg
+	says 0 "mask-import: warning: by: its folders are things and their pictures views, as their names say
+mask-import: warning: by: 1 pictures that are no PNG are left out" "$BIN/mask-import" -o masks by
+	mkdir -p jpegs && cp -r by/v jpegs
+	says 3 "mask-import: jpegs: has no masks VIEW/NAME.png, but pictures of another kind: save masks as PNG; give pictures of views, and labels, one by one" "$BIN/mask-import" jpegs
+	rm by/*/*.jpg
 	mv by/cup/img_001.png by/cup/a.png && mv by/mug/img_002.jpg.png by/mug/b.png
 	[ "$("$BIN/mask-import" -q by | jq -r .view | tr '\n' ' ')" = "cup mug " ]
 	scene s

@@ -326,6 +326,8 @@ refer-lift: warning: unknown: $(grep -c nobody unknown) masks are of no training
 	refuses 3 "away:1: key 'view': the scene has no view 'elsewhere'; there are 6: view_000, view_001, view_002 ... view_005" --spare away
 	jq -c '.object = "view_001"' away >swapped
 	refuses 3 "swapped:1: key 'view': the scene has no view 'elsewhere'; there are 6: view_000, view_001, view_002 ... view_005: 'object' names one: are the two exchanged?" --masks swapped
+	jq -c '.segmentation.counts = [.segmentation.size[0] * .segmentation.size[1]]' masks.jsonl >nothing
+	lift --masks nothing -o none 2>&1 | grep -q "^refer-lift: warning: nothing: none of its $(wc -l <nothing) masks has a pixel$"
 	jq -c '.view += "_png.rf.0a1b2c"' masks.jsonl | head -n 1 >away
 	refuses 3 "away:1: key 'view': the scene has no view 'view_000_png.rf.0a1b2c'; there are 6: view_000, view_001, view_002 ... view_005: Roboflow renames pictures, and may stretch and turn them: export without that, and rename the views" --masks away
 	refuses 3 "scene/splats.safetensors: format is 'refer.splats', expected 'refer.text'" --text scene/splats.safetensors
