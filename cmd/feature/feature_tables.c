@@ -28,6 +28,16 @@ static int check_shape(const struct feature_maps *m, size_t view, const char *pa
 	return rle_check_shape("a map", h, w, "the view", c->height, c->width, e) ? err_prefix(e, path) : 0;
 }
 
+/* Whether sizes are those of a map (C,H,W), as PyTorch has them: the last two are the view's shape or a
+ * square, and the first two are not. */
+static int is_channels_first(const struct npy *t, const struct camera *c)
+{
+	const int64_t a = (int64_t)t->shape[0], b = (int64_t)t->shape[1], d = (int64_t)t->shape[2];
+
+	return a != b && !rle_has_shape(a, b, c->height, c->width) &&
+	       (b == d || rle_has_shape(b, d, c->height, c->width));
+}
+
 /* A table of features: VIEW.npy (H,W,C), or VIEW_f.npy (N,C). */
 static int check_table(const struct npy *t, int dims, const char *path, struct err *e)
 {
@@ -90,7 +100,11 @@ static int open_table(
 	if (!check_table(t, is_map ? 3 : 2, called, e) &&
 		(!is_map || !check_shape(m, view, called, t->shape[0], t->shape[1], e))) {
 		*channels = t->shape[t->dims - 1];
-		return 0;
+		if (!is_map || !is_channels_first(t, &m->scene->cameras.views[view]))
+			return 0;
+		err_set(e, ERR_FORMAT,
+			"%s: %zux%zux%zu is channels, height and width, as it seems: transpose it (in NumPy by (1, 2, 0))",
+			called, t->shape[0], t->shape[1], t->shape[2]);
 	}
 	npy_close(t);
 	return -1;

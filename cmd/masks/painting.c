@@ -87,6 +87,10 @@ static int check_picture(struct putting *p, struct annotations *a, const char *p
 		const int same = strcmp(one->view, a->view) != 0 || path_is_same(one->picture, a->picture, e);
 		if (same <= 0)
 			return same < 0 ? -1 : painting_two_pictures(one->file, path, a->view, e);
+		if (!strcmp(one->view, a->view))
+			report_warn(p->to,
+				"%s: of the picture of %s, '%s': is that right, or was the file renamed?",
+				path, one->file, a->picture);
 	}
 	if (mem_grow((void **)&p->labelled, &p->labelled_room, p->labelled_count + 1, sizeof *p->labelled,
 		    "pictures", e))

@@ -79,6 +79,28 @@ static int draw_runs(struct reading *r, struct annotation *on, const cJSON *item
 	return reading_unite(r, on, &rle, e);
 }
 
+/* Programs write y before x. The annotation's "bbox", [left, top, width, height] or two corners, has then
+ * most corners of the polygon when they are exchanged, and few as they are. */
+static int check_order(const struct reading *r, const cJSON *item, size_t count, struct err *e)
+{
+	const double beside = 1 + 0.01 * fmax(r->width, r->height);
+	size_t inside[2] = {0, 0};
+	double b[4];
+
+	if (json_numbers(json_get(item, "bbox"), 4, b))
+		return 0;
+	for (size_t i = 0; i < 2 * count; i++) {
+		const size_t k = i % 2;
+		const double x = r->points[i] - b[0], y = r->points[i + 1 - 2 * k] - b[1];
+		inside[k] += x >= -beside && y >= -beside && x <= fmax(b[2], b[2] - b[0]) + beside &&
+			     y <= fmax(b[3], b[3] - b[1]) + beside;
+	}
+	return inside[1] < 0.9 * (double)count || inside[0] > 0.5 * (double)count
+		       ? 0
+		       : err_file(e, r->where,
+				 "its points have y before x, as its 'bbox' shows: they go [x,y,x,y, ...]");
+}
+
 /* Polygons, of which all are parts of the thing, or run lengths. */
 static int read_segmentation(
 	struct reading *r, const cJSON *item, const char *view, const char *name, struct err *e)
@@ -104,7 +126,8 @@ static int read_segmentation(
 		if (!cJSON_IsArray(polygon))
 			return err_file(
 				e, r->where, "key 'segmentation' is neither polygons nor run lengths");
-		if (reading_points(r, polygon, &count, e) || reading_draw(r, on, count, e))
+		if (reading_points(r, polygon, &count, e) || check_order(r, item, count, e) ||
+			reading_draw(r, on, count, e))
 			return -1;
 	}
 	on->shapes = on->shapes > before ? before + 1 : before;

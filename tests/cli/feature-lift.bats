@@ -278,6 +278,8 @@ Try 'feature-lift --help'." lift -o all.npz all.npz
 	refuses 3 "maps/$view.npy: has 2 dimensions, not 3: height, width and channels" maps
 	npy "maps/$view.npy" '<f4' '0, 2, 2' ''
 	refuses 3 "maps/$view.npy: a map of no pixels" maps
+	npy "maps/$view.npy" '<f4' '2, 24, 32' "$(printf "$left%.0s" {1..768})"
+	refuses 3 "maps/$view.npy: 2x24x32 is channels, height and width, as it seems: transpose it (in NumPy by (1, 2, 0))" maps
 	npy "maps/$view.npy" '<f4' '2, 2, 0' ''
 	refuses 3 "maps/$view.npy: 0 channels, not 1 to 65536" maps
 	npy "maps/$view.npy" '<c8' '1, 1, 2' $left$right

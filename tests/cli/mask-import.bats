@@ -84,7 +84,8 @@ refuses() {
 	labelme '{"label":"cup","points":[[1,1],[3,1],[3,3]]}' >a/1.json
 	cp a/1.json a/2.json
 	cp a/1.json b/1.json # of ../photos, which is the same for both
-	"$BIN/mask-import" -q -o masks a/1.json a/2.json b/1.json
+	"$BIN/mask-import" -o masks a/1.json a/2.json b/1.json 2>err
+	grep -qx "mask-import: warning: a/2.json: of the picture of a/1.json, 'a/../photos/view_1.jpg': is that right, or was the file renamed?" err
 	sed -i 's,\.\.\\\\photos\\\\,,' a/1.json b/1.json
 	grep -q '"imagePath":"view_1.jpg"' a/1.json
 	two a/1.json b/1.json
@@ -318,6 +319,10 @@ coco() {
 		says 3 "mask-import: warning: x.json: 1 $2 are left out
 mask-import: x.json: has no label with an area" "$BIN/mask-import" -o none x.json
 	}
+	for box in '[12, 1, 6, 4]' '[12, 1, 18, 5]'; do
+		coco '[[1,12,1,18,5,18,5,12]]' | jq ".annotations[0].bbox = $box" >x.json
+		says 3 "mask-import: x.json: annotation 0: its points have y before x, as its 'bbox' shows: they go [x,y,x,y, ...]" "$BIN/mask-import" -o none x.json
+	done
 	gone '[[2,2,6,8]]' "outlines of fewer than three corners"
 	gone '[[2,2,2.2,2,2.2,2.2]]' "shapes without a pixel"
 	gone '[]' "boxes (key 'bbox') without an outline"
