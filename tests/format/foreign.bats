@@ -143,6 +143,7 @@ refused() {
 		bundle|# Bundle file v0.3|cameras of Bundler: $trained
 		a.npy|\\x93NUMPY\\x01|an array of NumPy, as LLFF's poses_bounds.npy: give the COLMAP model that it was made from, sparse/0
 		database.db|x|COLMAP's database, which has no poses: give the folder of its model, sparse/0
+		model.zip|x|a zip: unzip it, and give its folder
 		images.txt|x|a text file: of a COLMAP model, give the folder with cameras.txt and images.txt
 		images.bin|x|a part of a COLMAP model: give the model's folder
 		other|x|neither the folder of a COLMAP model, nor a 3DGS cameras.json or a transforms.json
