@@ -147,8 +147,11 @@ static void judge_phrase(struct meaning *m, int phrase, int depth)
 	judge_below(m, phrase, depth);
 	for (int k = 0; k + 1 < f->noun.n; k++)
 		judge_attribute(m, phrase, f->noun.item[k], MODIFIER_LEAST);
+	/* of "something electronic" nothing else is told */
+	const int is_all_told = f->count != PARSE_ONE && meaning_head_of(p, f) < 0 && f->attributes.n == 1;
 	for (int k = 0; k < f->attributes.n; k++)
-		judge_attribute(m, phrase, f->attributes.item[k], ATTRIBUTE_LEAST);
+		judge_attribute(
+			m, phrase, f->attributes.item[k], is_all_told ? ATTRIBUTE_SEVERAL : ATTRIBUTE_LEAST);
 	judge_clauses(m, phrase);
 	judge_motion(m, phrase);
 	for (int k = 0; k < f->except.n; k++)

@@ -153,11 +153,11 @@ static void judge_compound(struct vocabulary *v, const struct parse *p, int w, d
 		return;
 	naming_of_word(&second, p->words[w].lemma);
 	for (size_t o = 0; o < v->lifted->objects; o++) {
-		if (is_said_of(v, p->words[first].lemma, o))
-			continue;
 		const char *content = v->contents[o];
 		const int is_plain = !*content || colour_word(content) >= 0;
-		match[o] *= is_plain && is_sort_of(v, &known, &second, o) ? KIND_WORTH : COMPOUND_WORTH;
+		if (!is_said_of(v, p->words[first].lemma, o))
+			match[o] *=
+				is_plain && is_sort_of(v, &known, &second, o) ? KIND_WORTH : COMPOUND_WORTH;
 		if (v->has_names)
 			match[o] = fmax(match[o], knowledge_of_name(v, &known, o));
 		for (size_t i = 0; i < v->n; i++)

@@ -38,7 +38,7 @@ void naming_of_thing(struct naming *to, const char *lemma)
 
 int naming_is_known(const struct naming *n)
 {
-	return n->noun.n || n->things.n;
+	return n->noun.n || n->things.n || kinds_have(n->lemma);
 }
 
 double naming_fits(const struct naming *word, const struct naming *known, int is_general)
