@@ -135,6 +135,10 @@ int meaning_is_scene(const struct meaning *m, int phrase)
 	const struct parse *p = m->sentence->parse;
 	const int head = meaning_head_of(p, &p->phrases[phrase]);
 
+	/* of the "table top" the table tells */
+	const int is_top = head > 0 && meaning_word_is(&p->words[head], "top|surface");
 	return p->phrases[phrase].scene ||
-	       (head >= 0 && m->known[phrase] < 0.5 && meaning_word_is(&p->words[head], places));
+	       (head >= 0 && m->known[phrase] < 0.5 &&
+		       (meaning_word_is(&p->words[head], places) ||
+			       (is_top && meaning_word_is(&p->words[head - 1], places))));
 }

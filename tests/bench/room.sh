@@ -2,8 +2,9 @@
 # Usage: DATA=DIR/room SPLATS=room.ply [BIN=build/bin] [BERT=DIR] [KEEP=DIR] tests/bench/room.sh [SENTENCES]
 #
 # The room of pipelines/lift.md, in its layout (sparse/0, images, truth.jsonl, sentences.jsonl, dev.jsonl): lifts the true masks with
-# their names alone and with training sentences, and asks dev.jsonl or SENTENCES; room.jsonl beside this are such by a writer who
-# saw photographs alone, every second one read since; of those of room-kept-back.jsonl please read only the figures. Prints what is right by kind (miou-score --answers). KEEP
+# their names alone and with training sentences, and asks dev.jsonl or SENTENCES. Beside this are sentences of writers who saw photographs
+# alone: room-looked-at.jsonl was read, of room.jsonl every second one; of those of room-kept-back.jsonl please read only the figures.
+# Prints what is right by kind (miou-score --answers). KEEP
 # keeps the scene and its weights for the next run, which lifts again.
 set -euo pipefail
 export LC_ALL=C

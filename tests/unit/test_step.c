@@ -86,7 +86,7 @@ static double compare_step(const struct reference_sample *s, struct floats *f, c
 /* Several blocks, the last not full; and so many that in no sample a unit is so near to 0 that float32 takes
  * the other side of its kink. What sanitizers find in many they find in some. */
 #ifdef __SANITIZE_ADDRESS__
-enum { MANY = 500 };
+enum { MANY = 150 };
 #else
 enum { MANY = 1500 };
 #endif
