@@ -250,7 +250,7 @@ test: packages ## set up, build, run every test; FILTER=text picks test files by
 
 check: # the tests without installing anything
 	@$(MAKE) --no-print-directory $(PARALLEL) -s tools library units benches
-	@tests/run.sh $(BUILD) $$(($(JOBS) + 1)) "$(FILTER)"
+	@tests/run.sh $(BUILD) $(JOBS) "$(FILTER)"
 
 test-real: packages ## the whole method on real scenes: make test-real DATA=DIR
 	@[ -n "$(DATA)" ] || { echo "usage: make test-real DATA=DIR" >&2; exit 2; }
@@ -302,13 +302,16 @@ lint-format:
 lint-man:
 	@$(if $(MAN_PAGES),mandoc -T lint -W warning $(MAN_PAGES))
 
-# The analyzer, nine tenths of the time, is for what changed.
+# What nobody changed was looked at before: the analyzer is for changed files, the rest of clang-tidy for those that include changed
+# headers too. `make check-all` looks at all.
 TIDY_FILES = $(filter-out tests/%,$(filter %.c,$(C_FILES)))
-ANALYZE ?= $(filter $(TIDY_FILES),$(shell tests/changed.sh))
+CHANGED = $(shell tests/changed.sh)
+ANALYZE ?= $(filter $(TIDY_FILES),$(CHANGED))
+TIDY ?= $(if $(filter %.h,$(CHANGED)),$(shell grep -lF $(patsubst %,-e '"%"',$(patsubst libcommon/%,%,$(filter %.h,$(CHANGED)))) $(TIDY_FILES)))
 tidy = printf '%s\n' $(2) | xargs -r -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet $(1) "$$@" -- $(TIDY_FLAGS)' tidy
 
 lint-tidy: $(TABLES)
-	@$(call tidy,--checks=-clang-analyzer-*,$(filter-out $(ANALYZE),$(TIDY_FILES)))
+	@$(call tidy,--checks=-clang-analyzer-*,$(filter-out $(ANALYZE),$(TIDY)))
 	@$(call tidy,,$(ANALYZE))
 
 format: ## bring every C file into the house's form

@@ -188,16 +188,22 @@ Try 'gs-train --help'." try --resume -o -
 	[ $SECONDS -lt 20 ]
 }
 
+# mask_of DIR: of a thing of a made scene
+mask_of() {
+	"$BIN/mask-export" -q --png "$1/png" -o "$1/coco.json" "$1/truth.jsonl"
+	cp "$(ls "$1"/png/view_000/*.png | head -n 1)" masks/view_000.png
+}
+
 @test "--ignore: masks are read, and must have the shape of their view" {
 	mkdir masks
 	"$BIN/gs-synth" -q --objects 3 --views 2 --size 64x48 --gaussians 1000 -o other
 	try -o plain.ply
-	cp other/images/view_000.png masks
+	mask_of other
 	try --ignore masks
 	! cmp -s plain.ply out.ply
 	rm out.ply
 	"$BIN/gs-synth" -q --objects 3 --views 2 --size 48x48 --gaussians 1000 -o square
-	cp square/images/view_000.png masks
+	mask_of square
 	refuses "masks/view_000.png: 48x48, which is not the shape of its camera, 64x48" --ignore masks
 }
 
