@@ -27,4 +27,4 @@ deb: all ## make a Debian package, build/refersplat_VERSION_ARCH.deb
 		' Given a trained scene, posed photographs and sentences, these programs find the' \
 		' Gaussians of the object that each sentence means, draw its mask for any camera,' \
 		' and say where it is in space. They run on the processor alone.' >$(DEB)/root/DEBIAN/control
-	@SOURCE_DATE_EPOCH=$${SOURCE_DATE_EPOCH:-$$(git log -1 --format=%ct 2>/dev/null || date +%s)} dpkg-deb --root-owner-group -b $(DEB)/root $(DEB_FILE)
+	@SOURCE_DATE_EPOCH=$${SOURCE_DATE_EPOCH:-$$(git log -1 --format=%ct 2>/dev/null || date +%s)} dpkg-deb $(DEB_FLAGS) --root-owner-group -b $(DEB)/root $(DEB_FILE)

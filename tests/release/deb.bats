@@ -7,7 +7,7 @@ setup_file() {
 	BIN=${BIN:-$ROOT/build/bin}
 	export built=$(dirname "$(cd "$BIN" && pwd)")
 	can_make || return 0
-	make -C "$ROOT" -s -o all BUILD="$built" deb >"$BATS_FILE_TMPDIR/log" 2>&1 || { cat "$BATS_FILE_TMPDIR/log"; return 1; }
+	make -C "$ROOT" -s -o all BUILD="$built" DEB_FLAGS="-Zgzip -z1" deb >"$BATS_FILE_TMPDIR/log" 2>&1 || { cat "$BATS_FILE_TMPDIR/log"; return 1; }
 	cp "$built"/refersplat_*.deb "$BATS_FILE_TMPDIR/refersplat.deb"
 	dpkg-deb -x "$BATS_FILE_TMPDIR/refersplat.deb" "$BATS_FILE_TMPDIR/root"
 }
@@ -87,6 +87,6 @@ field() { dpkg-deb -f "$deb" "$1"; }
 }
 
 @test "the same bytes again" {
-	make -C "$ROOT" -s -o all BUILD="$built" deb >log 2>&1
+	make -C "$ROOT" -s -o all BUILD="$built" DEB_FLAGS="-Zgzip -z1" deb >log 2>&1
 	cmp "$built"/refersplat_*.deb "$deb"
 }
