@@ -67,6 +67,7 @@ int parse_apply_rules(struct parse *p, unsigned without, struct err *e);
 /* Two of these: "the tray and what is on it" are two; so "two boxes, the red one and the one by the door". */
 int parse_companion(struct parse *p, struct err *e);
 int parse_members(struct parse *p, struct err *e);
+int parse_shared(struct parse *p, struct err *e);
 
 /* Room for two phrases and a clause more; pointers to those before are then stale. */
 int parse_make_room(struct parse *p, struct err *e);

@@ -108,6 +108,55 @@ static int turn_choice(struct parse *p, struct err *e)
 	return parse_list_add(&phrases[0].among, last, e);
 }
 
+/* The word that begins what is said of several, "that are taller", or -1. */
+static int find_shared(const struct parse *p)
+{
+	for (int w = 1; w + 1 < p->word_count; w++)
+		if (parse_word_is(p, w, "that|which|who") &&
+			parse_word_is(p, w + 1, "are|have|were|stand|lie|sit|hang|can|do"))
+			return w;
+	return -1;
+}
+
+/* What is said of the last from that word on is said of a phrase, too. */
+static int take_shared(
+	struct parse *p, struct parse_phrase *f, const struct parse_phrase *last, int word, struct err *e)
+{
+	const int begin = p->words[word].span.begin;
+	int bad = 0;
+
+	f->count = PARSE_ALL; /* none of them may be so */
+	for (int k = 0; k < last->attributes.n && f != last && !bad; k++)
+		if (last->attributes.item[k] > word)
+			bad = parse_list_add(&f->attributes, last->attributes.item[k], e);
+	for (int k = 0; k < last->clauses.n && f != last && !bad; k++)
+		if (p->clauses[last->clauses.item[k]].span.begin > begin)
+			bad = parse_list_add(&f->clauses, last->clauses.item[k], e);
+	for (int k = 0; k < last->except.n && f != last && !bad; k++)
+		if (p->phrases[last->except.item[k]].span.begin > begin)
+			bad = parse_list_add(&f->except, last->except.item[k], e);
+	return bad;
+}
+
+int parse_shared(struct parse *p, struct err *e)
+{
+	const int word = find_shared(p);
+	struct parse_phrase *f = &p->phrases[0], *last = NULL;
+
+	if (word < 0 || !f->also.n)
+		return 0;
+	for (int k = -1; k < f->also.n; k++) {
+		struct parse_phrase *member = k < 0 ? f : &p->phrases[f->also.item[k]];
+		if (member->span.begin < p->words[word].span.begin &&
+			(!last || member->span.begin > last->span.begin))
+			last = member;
+	}
+	for (int k = -1; k < f->also.n && last; k++)
+		if (take_shared(p, k < 0 ? f : &p->phrases[f->also.item[k]], last, word, e))
+			return -1;
+	return 0;
+}
+
 int parse_members(struct parse *p, struct err *e)
 {
 	if (are_choice(p) && turn_choice(p, e))

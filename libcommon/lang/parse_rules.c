@@ -37,7 +37,8 @@ int parse_apply_rules(struct parse *p, unsigned without, struct err *e)
 		take_content(p, &p->phrases[i]);
 	if (rule_counts(without, RULE_one_of))
 		take_one_of(p, &p->phrases[0]);
-	return (rule_counts(without, RULE_members) && parse_members(p, e)) ||
+	return (rule_counts(without, RULE_shared) && parse_shared(p, e)) ||
+			       (rule_counts(without, RULE_members) && parse_members(p, e)) ||
 			       (rule_counts(without, RULE_companion) && parse_companion(p, e))
 		       ? -1
 		       : 0;

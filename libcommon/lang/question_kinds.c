@@ -275,6 +275,11 @@ static int find_kind(struct question_asked *q, const char *text, int way)
 
 	tokens_take(&t, text, NULL, NULL, 0);
 	leave_fillers(&t);
+	if (question_say_list(again, sizeof again, &t, text)) {
+		*q = (struct question_asked){.kind = QUESTION_NUMBER, .relation = -1};
+		snprintf(q->text[0], sizeof q->text[0], "%s", again);
+		return !way;
+	}
 	int found = find_row(q, &t, text, way);
 	if (found < 0 && question_say_again(again, sizeof again, &t, text)) {
 		text = again;

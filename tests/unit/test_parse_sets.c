@@ -54,6 +54,25 @@ static void choices(const char *text, const char *roles, int among)
 	parse_free(&p);
 }
 
+/* What is said of all that are listed is said of each. */
+static void shares(const char *text, const char *roles, int count, int attributes)
+{
+	struct parse p = built(text, roles, PARSE_SMALLER);
+	const struct parse_phrase *f = &p.phrases[0];
+
+	CHECK(f->count == count && f->attributes.n == attributes && f->also.n == 1,
+		"'%s': count %d, %d attributes, %d also", text, f->count, f->attributes.n, f->also.n);
+	parse_free(&p);
+}
+
+static void shares_what_is_said(void)
+{
+	shares("the lamp and the plate that are blue", ". T . . L . . a4", PARSE_ALL, 1);
+	shares("the lamp and the plate that is blue", ". T . . L . . a4", PARSE_ONE, 0);
+	shares("the lamp and the blue plate", ". T . . a5 L", PARSE_ONE, 0);
+	shares("the lamp and the red plate that are small", ". T . . a5 L . . a5", PARSE_ALL, 1);
+}
+
 static void counts_choices(void)
 {
 	choices("the smallest of the lamp and the plate", ". P . . T . . L", 2);
@@ -148,6 +167,7 @@ int main(void)
 	tells_places();
 	counts_things();
 	counts_choices();
+	shares_what_is_said();
 	counts_in_order();
 	tells_way();
 	tells_members();

@@ -21,6 +21,8 @@ static void forms(void)
 	is("what is the number of red mugs?", QUESTION_NUMBER, "red mugs", "");
 	is("Mugs on a tray. What number do you see?", QUESTION_NUMBER, "how many Mugs on a tray", "");
 	is("the mug with a number on it", QUESTION_WHICH, "the mug with a number on it", "");
+	is("mug, jug, tray: how many of them are red?", QUESTION_NUMBER,
+		"the mug, the jug and the tray that are red", "");
 	is("the total", QUESTION_WHICH, "the total", "");
 	is("mug vs jug: who is taller?", QUESTION_COMPARE, "the mug", "the jug");
 	is("Sort the mug, the jug and the tray by height: which one is second?", QUESTION_WHICH,
