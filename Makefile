@@ -277,7 +277,7 @@ clang-packages: packages
 	$(call need,clang=clang)
 	$(call need,omp.h=libomp-dev)
 
-# The tools' own tests are left to check-all, and the test of the float64 twin, which is no part of the program.
+# The tools' own tests are left to check-all, those of gs-synth's words and detector too, and the float64 twin's, which is no part of the program.
 sanitize: clang-packages ## units, readers of files and each tool once with address and undefined-behaviour sanitizers, by clang, in build-asan
 	@$(ASAN_BUILD) units fuzzers readers
 	@SKIP='/(cli|format|release)/|structure|test_reference|test_synth_(detector|unseen|words)|pipeline/[^f]' tests/run.sh build-asan $(JOBS) "$(FILTER)"
@@ -307,7 +307,8 @@ lint-man:
 TIDY_FILES = $(filter-out tests/%,$(filter %.c,$(C_FILES)))
 CHANGED = $(shell tests/changed.sh)
 ANALYZE ?= $(filter $(TIDY_FILES),$(CHANGED))
-TIDY ?= $(if $(filter %.h,$(CHANGED)),$(shell grep -lF $(patsubst %,-e '"%"',$(patsubst libcommon/%,%,$(filter %.h,$(CHANGED)))) $(TIDY_FILES)))
+TIDY ?= $(if $(filter .clang-tidy,$(CHANGED)),$(TIDY_FILES),$(TIDY_INCLUDING))
+TIDY_INCLUDING = $(if $(filter %.h,$(CHANGED)),$(shell grep -lF $(patsubst %,-e '"%"',$(patsubst libcommon/%,%,$(filter %.h,$(CHANGED)))) $(TIDY_FILES)))
 tidy = printf '%s\n' $(2) | xargs -r -P $(JOBS) -n 4 sh -c 'clang-tidy --quiet $(1) "$$@" -- $(TIDY_FLAGS)' tidy
 
 lint-tidy: $(TABLES)

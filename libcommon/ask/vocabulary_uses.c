@@ -113,9 +113,10 @@ void vocabulary_at(struct vocabulary *v, const struct vocabulary_sentence *s, in
 			    1U << PARSE_BELOW | 1U << PARSE_FRONT | 1U << PARSE_BEHIND | 1U << PARSE_LEFT |
 			    1U << PARSE_RIGHT | 1U << PARSE_BETWEEN;
 	const char *lemma = s->parse->words[w].lemma;
-	struct naming known;
+	struct naming known = {0};
 
-	naming_of_word(&known, lemma);
+	if (v->has_knowledge)
+		naming_of_word(&known, lemma);
 	for (size_t o = 0; o < v->lifted->objects; o++)
 		match[o] = v->has_names && v->has_said &&
 			   vocabulary_in_name(lemma, v->lifted->names[o]) == 1 && wordnet_is_noun(lemma) &&

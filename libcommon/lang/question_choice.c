@@ -137,7 +137,8 @@ static struct part find_anchor(const struct asked *q, int at, struct part list)
 	return (struct part){i, at - 1};
 }
 
-static struct order find_order(const struct asked *q, struct part list)
+/* things: how many there are to choose from. */
+static struct order find_order(const struct asked *q, struct part list, int things)
 {
 	const struct tokens *t = q->t;
 	struct order o = {.at = -1};
@@ -151,7 +152,7 @@ static struct order find_order(const struct asked *q, struct part list)
 		if (class == CLOSED_ORDINAL && w->value > 1)
 			o.place = w->value;
 		if (tokens_is(t, i, "middle"))
-			o.place = 2;
+			o.place = (things + 1) / 2;
 		if (noun)
 			o.word = noun;
 		else if ((class == CLOSED_SIZE || class == CLOSED_PLACE) && w->value != PARSE_PLAIN &&
@@ -197,19 +198,21 @@ int asked_say_choice(struct asked *q)
 		is_asked |= tokens_is(q->t, at, order_verbs);
 	if (n < 2 || !is_asked)
 		return 0;
-	const struct order o = find_order(q, (struct part){best[0].begin, best[n - 1].end});
+	const struct order o = find_order(q, (struct part){best[0].begin, best[n - 1].end}, n);
 	const int is_near = o.at >= 0 && (closed_words[q->t->word[o.at].closed].relation == PARSE_NEAR ||
 						 closed_words[q->t->word[o.at].closed].relation == PARSE_FAR);
-	if (!o.word || (is_near && o.anchor.begin >= o.anchor.end))
+	const int is_placed = n > 2 || o.place;
+	if (!o.word || o.place > n || (is_near && (is_placed || o.anchor.begin >= o.anchor.end)))
 		return 0;
-	if (n > 2 || o.place) {
-		static const char *const places[] = {"", "", "second ", "third ", "fourth ", "fifth "};
+	if (is_placed) {
+		static const char *const places[ITEMS + 1] = {
+			"", "", "second ", "third ", "fourth ", "fifth ", "sixth ", "seventh ", "eighth "};
 		asked_put(q, "the ");
-		asked_put(q, o.place < 6 ? places[o.place] : "");
+		asked_put(q, places[o.place]);
 		put_most(q, o.word);
 		asked_put(q, " of ");
 		asked_put_list(q, best, n, " and ");
-		return !is_near;
+		return 1;
 	}
 	asked_put(q, "which is ");
 	asked_put(q, o.word);

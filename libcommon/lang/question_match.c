@@ -154,6 +154,8 @@ int question_wants_yes(const struct tokens *t, const char *text)
 		"happen|notice|spot|detect|observe|recognise|recognize|own|have|perhaps|maybe|possibly|be";
 	int after = 0; /* what somebody is called by: "mum," */
 
+	if (!t->n)
+		return 0;
 	while (after < 3 && after + 1 < t->n && !(after && question_is_break(t, text, after)))
 		after++;
 	if (!question_is_break(t, text, after))

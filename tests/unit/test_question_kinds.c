@@ -27,6 +27,8 @@ static void forms(void)
 	is("mug vs jug: who is taller?", QUESTION_COMPARE, "the mug", "the jug");
 	is("Sort the mug, the jug and the tray by height: which one is second?", QUESTION_WHICH,
 		"the second tallest of the mug, the jug and the tray", "");
+	is("Rank mug, jug, tray, fork and box by size: which comes in the middle?", QUESTION_WHICH,
+		"the third largest of the mug, the jug, the tray, the fork and the box", "");
 	is("smallest in width: mug, jug, tray", QUESTION_WHICH,
 		"the narrowest of the mug, the jug and the tray", "");
 	is("say who is nearer to the tray: mug or jug", QUESTION_COMPARE, "mug", "jug");
