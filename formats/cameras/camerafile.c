@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "base/path.h"
 #include "base/textfile.h"
 #include "formats/cameras/colmap.h"
 #include "formats/cameras/transforms.h"
@@ -11,6 +12,7 @@
 #include "geom/views.h"
 
 #include <stdio.h>
+#include <strings.h>
 
 static int read_view(struct camera *c, const cJSON *item, const char *where, struct err *e)
 {
@@ -54,7 +56,7 @@ static int parse_3dgs(struct cameras *c, const cJSON *list, const char *path, st
 		if (read_view(&c->views[c->n++], item, where, e))
 			return -1;
 	}
-	return views_finish(c, path, e);
+	return 0;
 }
 
 /* JSON, or what else the file is. */
@@ -75,26 +77,52 @@ static cJSON *read_json(const char *path, struct err *e)
 	return root;
 }
 
+/* A JSON file's views, for views_finish. */
+static int add_json(struct cameras *c, const char *path, struct err *e)
+{
+	const char *name = file_name(path);
+	SCOPED_BY(json_release) cJSON *root = read_json(path, e);
+	const cJSON *frames = json_get(root, "frames"),
+		    *image = json_get(root ? root->child : NULL, "img_name");
+
+	if (!root || (!frames && !image && foreign_json(root, name, e)))
+		return -1;
+	return cJSON_IsArray(root) ? parse_3dgs(c, root, name, e) : transforms_add(c, root, name, e);
+}
+
+/* Blender's scenes have files of their own for views that nothing is trained with: the first there is beside
+ * transforms_train.json. */
+static int add_held_out(struct cameras *c, const char *path, struct err *e)
+{
+	static const char *const names[] = {"transforms_test.json", "transforms_val.json"};
+	SCOPED char *dir = file_dir(path, e);
+
+	if (!dir || strcasecmp(view_base(path), "transforms_train.json") != 0)
+		return dir ? 0 : -1;
+	for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+		SCOPED char *beside = path_alike(dir, names[i], e);
+		const size_t first = c->n;
+		if (beside && !file_exists(beside))
+			continue;
+		if (!beside || add_json(c, beside, e))
+			return -1;
+		for (size_t k = first; k < c->n; k++)
+			c->views[k].split = SPLIT_TEST;
+		break;
+	}
+	return 0;
+}
+
 int camerafile_read(struct cameras *c, const char *path, struct err *e)
 {
 	const char *name = file_name(path);
-	SCOPED_BY(json_release) cJSON *root = NULL;
 	int bad = -1;
 
 	*c = (struct cameras){0};
-	if (file_is_dir(path)) {
+	if (file_is_dir(path))
 		bad = colmap_read(c, path, e);
-	} else {
-		root = read_json(path, e);
-		const cJSON *frames = json_get(root, "frames"),
-			    *image = json_get(root ? root->child : NULL, "img_name");
-		if (root && !frames && !image && foreign_json(root, name, e))
-			bad = -1;
-		else if (cJSON_IsArray(root))
-			bad = parse_3dgs(c, root, name, e);
-		else if (root)
-			bad = transforms_parse(c, root, name, e);
-	}
+	else
+		bad = add_json(c, path, e) || add_held_out(c, path, e) || views_finish(c, name, e);
 	if (!bad && !c->n)
 		bad = err_file(e, name,
 			"no views: a COLMAP model has them in images.bin or images.txt, a transforms.json in its frames");

@@ -136,7 +136,7 @@ static int check_end(const struct cursor *in, struct err *e)
 		e, in->path, "%zu bytes after the last entry, from offset %zu", in->map.len - in->at, in->at);
 }
 
-static int read_cameras_binary(struct colmap_entries *all, struct cursor *in, const char *path, struct err *e)
+static int read_camera_entries(struct colmap_entries *all, struct cursor *in, const char *path, struct err *e)
 {
 	uint64_t count = 0;
 
@@ -166,7 +166,7 @@ static int read_cameras_binary(struct colmap_entries *all, struct cursor *in, co
 	return check_end(in, e);
 }
 
-static int read_images_binary(struct cameras *c, const struct colmap_entries *all, struct cursor *in,
+static int read_image_entries(struct cameras *c, const struct colmap_entries *all, struct cursor *in,
 	const char *path, struct err *e)
 {
 	uint64_t count = 0;
@@ -196,57 +196,84 @@ static int read_images_binary(struct cameras *c, const struct colmap_entries *al
 	return check_end(in, e);
 }
 
-/* The path of a part, whatever the case of its letters. */
+static int read_cameras_binary(struct colmap_entries *all, const char *path, struct err *e)
+{
+	struct cursor in = {0};
+	const int bad = read_camera_entries(all, &in, path, e);
+
+	file_unmap(&in.map);
+	return bad;
+}
+
+static int read_images_binary(
+	struct cameras *c, const struct colmap_entries *all, const char *path, struct err *e)
+{
+	struct cursor in = {0};
+	const int bad = read_image_entries(c, all, &in, path, e);
+
+	file_unmap(&in.map);
+	return bad;
+}
+
+/* A part of a model in one form, whatever the case of its letters: its path, or NULL where it is not there or
+ * memory is out. */
 static char *part_of(const char *dir, const char *name, const char *suffix, struct err *e)
 {
 	char file[16];
 
 	snprintf(file, sizeof file, "%s%s", name, suffix);
-	return path_alike(dir, file, e);
+	char *path = path_alike(dir, file, e);
+	if (path && file_exists(path))
+		return path;
+	free(path);
+	return NULL;
 }
 
-static int is_pair(const char *dir, const char *suffix)
+/* The paths of cameras and images: as a pair where there is one, first the binary one, else each in its own
+ * form. -1 where the folder is no model. free() them. */
+static int find_parts(const char *dir, char *parts[2], struct err *e)
 {
-	struct err ignored;
-	SCOPED char *a = part_of(dir, "cameras", suffix, &ignored),
-		    *b = part_of(dir, "images", suffix, &ignored);
+	static const char *const forms[][2] = {
+		{".bin", ".bin"}, {".txt", ".txt"}, {".bin", ".txt"}, {".txt", ".bin"}};
 
-	return a && b && file_exists(a) && file_exists(b);
+	for (size_t i = 0; i < sizeof forms / sizeof *forms; i++) {
+		parts[0] = part_of(dir, "cameras", forms[i][0], e);
+		parts[1] = part_of(dir, "images", forms[i][1], e);
+		if (parts[0] && parts[1])
+			return 0;
+		mem_free_all(parts[0], parts[1]);
+	}
+	return -1;
 }
 
 int colmap_is_model(const char *dir)
 {
-	return is_pair(dir, ".bin") || is_pair(dir, ".txt");
-}
+	struct err ignored;
+	char *parts[2];
+	const int is_there = !find_parts(dir, parts, &ignored);
 
-static int read_binary(
-	struct cameras *c, struct colmap_entries *all, const char *cameras, const char *images, struct err *e)
-{
-	struct cursor first = {0}, second = {0};
-	int bad = read_cameras_binary(all, &first, cameras, e) || colmap_sort_entries(all, cameras, e) ||
-		  read_images_binary(c, all, &second, images, e);
-
-	file_unmap(&first.map);
-	file_unmap(&second.map);
-	return bad;
+	if (is_there)
+		mem_free_all(parts[0], parts[1]);
+	return is_there;
 }
 
 int colmap_read(struct cameras *c, const char *dir, struct err *e)
 {
-	const char *suffix = is_pair(dir, ".bin") ? ".bin" : ".txt";
-	char *cameras = part_of(dir, "cameras", suffix, e), *images = part_of(dir, "images", suffix, e);
 	struct colmap_entries all = {0};
-	int bad = -1;
+	char *parts[2];
 
 	*c = (struct cameras){0};
-	if (cameras && images)
-		bad = !strcmp(suffix, ".bin") ? read_binary(c, &all, cameras, images, e)
-					      : colmap_read_text(c, &all, cameras, images, e);
-	if (!bad)
-		bad = views_finish(c, images, e);
+	if (find_parts(dir, parts, e))
+		return err_file(e, dir, "no COLMAP model: no cameras and images, .bin or .txt");
+	const int bad = (path_ends(parts[0], ".bin") ? read_cameras_binary : colmap_read_cameras_text)(
+				&all, parts[0], e) ||
+			colmap_sort_entries(&all, parts[0], e) ||
+			(path_ends(parts[1], ".bin") ? read_images_binary : colmap_read_images_text)(
+				c, &all, parts[1], e) ||
+			views_finish(c, parts[1], e);
 	if (bad)
 		cameras_free(c);
-	mem_free_all(all.items, cameras, images);
+	mem_free_all(all.items, parts[0], parts[1]);
 	return bad ? -1 : 0;
 }
 
@@ -306,8 +333,7 @@ int colmap_points_read(struct colmap_points *p, const char *dir, struct err *e)
 	*p = (struct colmap_points){0};
 	for (int i = 0; i < 2 && !bad && !p->n; i++) {
 		SCOPED char *path = part_of(dir, "points3D", suffixes[i], e);
-		bad = path ? 0 : -1;
-		if (path && file_exists(path))
+		if (path)
 			bad = i ? colmap_read_points_text(p, path, e) : read_points_binary(p, path, e);
 	}
 	if (bad)

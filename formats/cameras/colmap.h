@@ -9,12 +9,13 @@
 /* What may be read of a model's folder. */
 #define COLMAP_PARTS "cameras.bin|cameras.txt|images.bin|images.txt"
 
-/* 1 where dir holds cameras.bin and images.bin, or cameras.txt and images.txt. */
+/* 1 where dir holds cameras and images, each as .bin or .txt. */
 int colmap_is_model(const char *dir);
 
-/* Reads the model in dir (binary where both are there). Views are checked, named and sorted by views_finish;
- * `image` is the model's image name, all are SPLIT_TRAIN. A camera that distorts has its lens, and the
- * photograph's size and intrinsics: cameras_undistort makes it a pinhole. 0, or -1 with *e and *c zeroed. */
+/* Reads the model in dir (the binary pair where it is there). Views are checked, named and sorted by
+ * views_finish; `image` is the model's image name, all are SPLIT_TRAIN. A camera that distorts has its lens,
+ * and the photograph's size and intrinsics: cameras_undistort makes it a pinhole. 0, or -1 with *e and *c
+ * zeroed. */
 int colmap_read(struct cameras *c, const char *dir, struct err *e);
 
 /* Makes dir and writes cameras.txt (PINHOLE; views with the same intrinsics share a camera), images.txt

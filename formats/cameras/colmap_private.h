@@ -30,9 +30,9 @@ int colmap_sort_entries(struct colmap_entries *all, const char *path, struct err
 int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_entries *all,
 	const double pose[7], uint32_t camera, const char *image, const char *path, struct err *e);
 
-/* cameras.txt and images.txt. */
-int colmap_read_text(struct cameras *c, struct colmap_entries *all, const char *cameras, const char *images,
-	struct err *e);
+int colmap_read_cameras_text(struct colmap_entries *all, const char *path, struct err *e);
+int colmap_read_images_text(
+	struct cameras *c, const struct colmap_entries *all, const char *path, struct err *e);
 
 int colmap_add_point(struct colmap_points *p, size_t *room, const double place[3], const double color[3],
 	const char *path, struct err *e);

@@ -107,16 +107,16 @@ static int read_camera_text(
 		 colmap_add_entry(all, &l, path, e));
 }
 
-static int read_cameras_text(struct colmap_entries *all, struct lines *in, const char *path, struct err *e)
+int colmap_read_cameras_text(struct colmap_entries *all, const char *path, struct err *e)
 {
+	struct lines in;
 	char *line;
+	int bad = open_text(&in, path, e);
 
-	if (open_text(in, path, e))
-		return -1;
-	while ((line = next_entry(in)))
-		if (read_camera_text(all, in, line, path, e))
-			return -1;
-	return 0;
+	while (!bad && (line = next_entry(&in)))
+		bad = read_camera_text(all, &in, line, path, e);
+	free(in.text);
+	return bad;
 }
 
 /* What a line of images.txt is. */
@@ -168,7 +168,7 @@ static void note_count(const char *comment, struct lines *in)
 }
 
 /* An image's line is followed by one of its points, which may be empty; other programs leave it out. */
-static int read_images_text(struct cameras *c, const struct colmap_entries *all, struct lines *in,
+static int read_image_lines(struct cameras *c, const struct colmap_entries *all, struct lines *in,
 	const char *path, struct err *e)
 {
 	size_t capacity = 0;
@@ -207,14 +207,13 @@ static int read_images_text(struct cameras *c, const struct colmap_entries *all,
 	return 0;
 }
 
-int colmap_read_text(
-	struct cameras *c, struct colmap_entries *all, const char *cameras, const char *images, struct err *e)
+int colmap_read_images_text(
+	struct cameras *c, const struct colmap_entries *all, const char *path, struct err *e)
 {
-	struct lines first = {0}, second = {0};
-	int bad = read_cameras_text(all, &first, cameras, e) || colmap_sort_entries(all, cameras, e) ||
-		  read_images_text(c, all, &second, images, e);
+	struct lines in;
+	const int bad = read_image_lines(c, all, &in, path, e);
 
-	mem_free_all(first.text, second.text);
+	free(in.text);
 	return bad;
 }
 

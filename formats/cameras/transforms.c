@@ -8,6 +8,10 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <strings.h>
+
+/* COLMAP's numbers of models. */
+enum { OPENCV = 4, OPENCV_FISHEYE, FULL_OPENCV };
 
 /* The file_path lists of one split, sorted. */
 struct names {
@@ -55,12 +59,12 @@ static int read_distortion(struct lens *l, const cJSON *frame, const cJSON *root
 			return -1;
 	if (is_fisheye) {
 		memcpy(to, k, 4 * sizeof *k);
-		l->model = lens_model_named("OPENCV_FISHEYE", 14);
+		l->model = lens_model_numbered(OPENCV_FISHEYE);
 		return 0;
 	}
 	const double ordered[8] = {k[0], k[1], k[6], k[7], k[2], k[3], k[4], k[5]};
 	memcpy(to, ordered, sizeof ordered);
-	l->model = is_full || k[2] != 0 ? lens_model_named("FULL_OPENCV", 11) : lens_model_named("OPENCV", 6);
+	l->model = is_full || k[2] != 0 ? lens_model_numbered(FULL_OPENCV) : lens_model_numbered(OPENCV);
 	return check_coefficients(is_full, k, where, e);
 }
 
@@ -68,23 +72,21 @@ static int read_distortion(struct lens *l, const cJSON *frame, const cJSON *root
 static int read_lens(
 	struct camera *c, const cJSON *frame, const cJSON *root, const char *where, struct err *e)
 {
-	static const char *const perspective[] = {"OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL",
-		"RADIAL", "FULL_OPENCV", "PERSPECTIVE", "OPENCV_FISHEYE"};
 	struct lens l = {.width = c->width, .height = c->height, .parameters = {c->fx, c->fy, c->cx, c->cy}};
-	const char *model = NULL;
-	size_t i;
+	const char *model = "OPENCV";
 
-	if (json_string(frame, "camera_model", 0, &model, where, e) < 0 ||
-		(!model && json_string(root, "camera_model", 0, &model, where, e) < 0))
+	if (json_string(json_member(frame, "camera_model") ? frame : root, "camera_model", 0, &model, where,
+		    e) < 0)
 		return -1;
-	for (i = 0; model && i < sizeof perspective / sizeof *perspective; i++)
-		if (!strcmp(model, perspective[i]))
-			break;
-	if (model && i == sizeof perspective / sizeof *perspective)
+	const int is_named_so = strcasecmp(model, "PERSPECTIVE") != 0;
+	const struct lens_model *m =
+		is_named_so ? lens_model_named(model, strlen(model)) : lens_model_numbered(0);
+	if (!m || m > lens_model_numbered(FULL_OPENCV))
 		return err_file(e, where, "key 'camera_model': '%.40s' is not a perspective camera", model);
-	const int is_fisheye =
-		(model && !strcmp(model, "OPENCV_FISHEYE")) || cJSON_IsTrue(json_get(root, "is_fisheye"));
-	if (read_distortion(&l, frame, root, is_fisheye, model && !strcmp(model, "FULL_OPENCV"), where, e))
+	const cJSON *own = json_member(frame, "is_fisheye");
+	const int is_fisheye = m == lens_model_numbered(OPENCV_FISHEYE) ||
+			       cJSON_IsTrue(own ? own : json_get(root, "is_fisheye"));
+	if (read_distortion(&l, frame, root, is_fisheye, m == lens_model_numbered(FULL_OPENCV), where, e))
 		return -1;
 	if (lens_is_distorted(&l))
 		c->lens = l;
@@ -199,15 +201,16 @@ static int is_named(const struct names *names, const char *image)
 	return names->n && bsearch(&image, names->items, names->n, sizeof *names->items, compare_string);
 }
 
-/* Test views are those listed as such, and those that a list of training views lacks. */
-static int read_splits(struct cameras *c, const cJSON *root, const char *path, struct err *e)
+/* Of views from `first` on: test views are those listed as such, and those that a list of training views
+ * lacks. */
+static int read_splits(struct cameras *c, size_t first, const cJSON *root, const char *path, struct err *e)
 {
 	struct names train = {0}, test = {0};
 	int has_train = add_names(&train, root, "train_filenames", path, e), bad = has_train < 0;
 
 	bad = bad || add_names(&test, root, "test_filenames", path, e) < 0 ||
 	      add_names(&test, root, "val_filenames", path, e) < 0;
-	for (size_t i = 0; !bad && i < c->n; i++) {
+	for (size_t i = first; !bad && i < c->n; i++) {
 		struct camera *v = &c->views[i];
 		if (is_named(&test, v->image) || (has_train && !is_named(&train, v->image)))
 			v->split = SPLIT_TEST;
@@ -241,33 +244,31 @@ static int read_frames(
 {
 	const cJSON *frame;
 	char where[512];
+	size_t i = 0, room = c->n;
 
+	if (mem_grow((void **)&c->views, &room, c->n + (size_t)cJSON_GetArraySize(frames), sizeof *c->views,
+		    path, e))
+		return -1;
 	cJSON_ArrayForEach(frame, frames)
 	{
-		snprintf(where, sizeof where, "%s: frame %zu", path, c->n);
+		snprintf(where, sizeof where, "%s: frame %zu", path, i++);
+		c->views[c->n] = (struct camera){0};
 		if (read_frame(&c->views[c->n++], frame, common, where, e))
 			return -1;
 	}
 	return 0;
 }
 
-int transforms_parse(struct cameras *c, const cJSON *root, const char *path, struct err *e)
+int transforms_add(struct cameras *c, const cJSON *root, const char *path, struct err *e)
 {
 	const cJSON *frames = json_get(root, "frames");
+	const size_t first = c->n;
 
-	*c = (struct cameras){0};
 	if (!frames)
 		return err_file(e, path,
 			"neither a transforms.json, which has a key 'frames', nor a 3DGS cameras.json, which is a list");
 	if (!cJSON_IsArray(frames))
 		return err_file(e, path, "key 'frames' is not a list");
-	c->views = mem_zalloc((size_t)cJSON_GetArraySize(frames), sizeof *c->views, path, e);
-	if (!c->views)
-		return -1;
 	SCOPED_BY(json_release) cJSON *common = common_members(root, path, e);
-	int bad = !common || read_frames(c, frames, common, path, e) || read_splits(c, root, path, e) ||
-		  views_finish(c, path, e);
-	if (bad)
-		cameras_free(c);
-	return bad ? -1 : 0;
+	return -(!common || read_frames(c, frames, common, path, e) || read_splits(c, first, root, path, e));
 }

@@ -6,7 +6,7 @@
 
 #include <cjson/cJSON.h>
 
-/* From a parsed file; `path` is for messages. Views are checked, named and sorted by views_finish; `image` is
- * file_path, the split is the file's where it has one. Lens distortion is refused unless it is 0. Returns 0,
- * or -1 with *e and *c zeroed. */
-int transforms_parse(struct cameras *c, const cJSON *root, const char *path, struct err *e);
+/* Adds the views of a parsed file; `path` is for messages. They are for views_finish to check, name and sort;
+ * `image` is file_path, the split is the file's where it has one, and what distorts is their lens. Returns 0,
+ * or -1 with *e; the cameras are still to be freed. */
+int transforms_add(struct cameras *c, const cJSON *root, const char *path, struct err *e);

@@ -240,13 +240,23 @@ int jsonl_text(struct jsonl *j, struct err *e)
 	return 1;
 }
 
+const char *jsonl_name_text(const cJSON *item, char digits[NUMBER_SIZE])
+{
+	const double x = cJSON_IsNumber(item) ? item->valuedouble : NAN;
+
+	if (!(fabs(x) < 1e15) || x != floor(x))
+		return cJSON_GetStringValue(item);
+	snprintf(digits, NUMBER_SIZE, "%.0f", x + 0.0);
+	return digits;
+}
+
 int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum name_kind kind, int need,
 	char **name, struct err *e)
 {
-	const char *text = NULL;
-	char fault[NAME_FAULT];
+	char fault[NAME_FAULT], digits[NUMBER_SIZE];
+	const char *text = jsonl_name_text(json_get(object, key), digits);
 
-	if (json_string(object, key, need, &text, j->where, e) < 0)
+	if (!text && json_string(object, key, need, &text, j->where, e) < 0)
 		return -1;
 	if (!text)
 		return 0;

@@ -3,6 +3,7 @@
 
 #include "base/err.h"
 #include "base/name.h"
+#include "base/number.h"
 
 #include <cjson/cJSON.h>
 #include <stdio.h>
@@ -50,6 +51,9 @@ int jsonl_check_refs(const struct jsonl *j, const void *records, size_t size, si
 /* Sets ERR_FORMAT with "path:LINE: reason". Always returns -1. */
 int jsonl_err(const struct jsonl *j, struct err *e, const char *format, ...)
 	__attribute__((format(printf, 3, 4)));
+
+/* The text of a name, which may be a whole number; NULL where it is neither. */
+const char *jsonl_name_text(const cJSON *item, char digits[NUMBER_SIZE]);
 
 /* A copy of a name in *name, which stays as it was where the key is absent or null. What base/name.h does not
  * take as a name is an error. Returns 0, or -1 with *e. */

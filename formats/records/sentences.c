@@ -67,9 +67,11 @@ static int read_list(char ***strings, size_t *n, const struct jsonl *j, const cJ
 		return -1;
 	cJSON_ArrayForEach(item, list)
 	{
-		if (!cJSON_IsString(item))
+		char digits[NUMBER_SIZE];
+		const char *text = jsonl_name_text(item, digits);
+		if (!text)
 			return jsonl_err(j, e, "key '%s' holds something other than strings", key);
-		(*strings)[*n] = copy_item(j, key, kind, item->valuestring, e);
+		(*strings)[*n] = copy_item(j, key, kind, text, e);
 		if (!(*strings)[*n])
 			return -1;
 		++*n;

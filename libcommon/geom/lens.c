@@ -6,6 +6,7 @@
 #include <float.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 enum { NEWTON_STEPS = 50 };
 
@@ -184,7 +185,7 @@ const struct lens_model *lens_model_numbered(uint32_t id)
 const struct lens_model *lens_model_named(const char *name, size_t length)
 {
 	for (int i = 0; i < MODELS; i++)
-		if (strlen(models[i].name) == length && !strncmp(models[i].name, name, length))
+		if (strlen(models[i].name) == length && !strncasecmp(models[i].name, name, length))
 			return &models[i];
 	return NULL;
 }

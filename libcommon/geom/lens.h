@@ -7,7 +7,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* COLMAP's model of that number or name (not ended by a zero byte); NULL where there is none. */
+/* COLMAP's model of that number, or name in any letters (not ended by a zero byte); NULL where there is none.
+ */
 const struct lens_model *lens_model_numbered(uint32_t id);
 const struct lens_model *lens_model_named(const char *name, size_t length);
 const char *lens_model_name(const struct lens_model *m);

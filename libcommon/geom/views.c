@@ -43,6 +43,19 @@ int view_set_size(struct camera *c, double width, double height)
 	return 0;
 }
 
+/* Where the last folder begins of a path that ends before `to` in a slash: what ".." after it takes back.
+ * NULL where there is none, or where it is ".." too. */
+static char *up_from(char *image, char *to)
+{
+	char *last = to - 1;
+
+	if (to - image < 2)
+		return NULL;
+	for (; last > image && last[-1] != '/';)
+		last--;
+	return !strncmp(last, "../", 3) ? NULL : last;
+}
+
 char *view_image(const char *path, struct err *e)
 {
 	char *image = name_copy(path, e), *to = image;
@@ -54,7 +67,10 @@ char *view_image(const char *path, struct err *e)
 		from += 2;
 	while (from && *from) {
 		const size_t n = strcspn(from, "/");
-		const int is_nothing = n == 1 && *from == '.' && from[n];
+		const int is_up = n == 2 && from[0] == '.' && from[1] == '.' && from[n];
+		char *last = is_up ? up_from(image, to) : NULL;
+		const int is_nothing = (n == 1 && *from == '.' && from[n]) || last;
+		to = last ? last : to;
 		if (!is_nothing) {
 			memmove(to, from, n);
 			to += n;

@@ -85,6 +85,15 @@ Try 'gs-import --help'." "$BIN/gs-import" -o scene s.ply
 	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["transforms","train"]' ]
 	mv x/transforms.json x/transforms_train.json
 	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["transforms","train"]' ]
+	transforms "frames=[$(frame 'file_path="val"')]" >x/Transforms_val.json
+	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["transforms","train"]["val","test"]' ]
+	transforms w=41 "frames=[$(frame 'file_path="test/transforms"'),$(frame 'file_path="c"')]" >x/transforms_test.json
+	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["c","test"]["test_transforms","test"]["transforms","train"]' ]
+	[ "$(imported width | tr -d '\n')" = '[41][41][40]' ]
+	echo '{"frames":1}' >x/transforms_test.json
+	rm -r scene
+	says 3 "gs-import: x/transforms_test.json: key 'frames' is not a list" "$BIN/gs-import" -o scene x/s.ply
+	rm x/transforms_test.json
 	colmap x/sparse
 	sed -i 's/a.jpg/sparse.jpg/' x/sparse/images.txt
 	[ "$(views "$BIN/gs-import" -o scene x/s.ply)" = '["b","train"]["c","train"]["sparse","train"]' ]

@@ -27,7 +27,7 @@ score() { "$BIN/miou-score" --boxes --truth truth "$@"; }
 
 @test "names" {
 	refuses "3: neither key 'ref' nor key 'object'" "{$unit}"
-	refuses "3: key 'ref' is not a string" "{\"ref\":1,$unit}"
+	refuses "3: key 'ref' is not a string" "{\"ref\":1.5,$unit}"
 	refuses "3: key 'object' is empty" "{\"object\":\"\",$unit}"
 	refuses "3: key 'object' has a control character at byte 2" "{\"object\":\"o\\n\",$unit}"
 	refuses "3: key 'ref' is not UTF-8 at byte 1" "{\"ref\":\"$(printf '\xff')\",\"object\":\"o\",$unit}"

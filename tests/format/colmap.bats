@@ -72,6 +72,9 @@ bad_image() {
 	bad_camera "does not begin with a camera id" 'x PINHOLE 40 30 50 51 20 15'
 	bad_camera "does not begin with a camera id" '-1 PINHOLE 40 30 50 51 20 15'
 	bad_camera "does not begin with a camera id" '4294967296 PINHOLE 40 30 50 51 20 15'
+	printf '1 Pinhole 40 30 50 51 20 15\n2 pinhole 40 30 50 51 20 15\n' >model/cameras.txt
+	import
+	rm -r scene
 	bad_camera "camera model 'PIN' is unknown" '1 PIN 40 30 50 51 20 15'
 	bad_camera "camera model '' is unknown" '1'
 	bad_camera "no width and height" '1 PINHOLE 40 x'
@@ -162,4 +165,15 @@ bad_image() {
 	# One camera of model 17, which this program does not know the length of.
 	{ printf '\1\0\0\0\0\0\0\0\5\0\0\0\21\0\0\0'; head -c 64 /dev/zero; } >model/cameras.bin
 	says 3 "gs-import: model/cameras.bin: camera 5: model id 17 at offset 12 is unknown" import
+}
+
+@test "cameras in one form and images in the other" {
+	xxd -r -p >model/cameras.bin <<<'0100000000000000 01000000 01000000 2800000000000000 1e00000000000000
+		0000000000004940 0000000000804940 0000000000003440 0000000000002e40'
+	sed -i 's/ 2 a.jpg/ 1 a.jpg/; s/ 50 51 / 60 61 /' model/images.txt model/cameras.txt
+	import
+	[ "$(imported fx fy | tr -d '\n')" = '[60,61][60,61][60,61]' ]
+	rm model/cameras.txt
+	import
+	[ "$(imported name fx fy | tr -d '\n')" = '["a",50,51]["b",50,51]["c",50,51]' ]
 }

@@ -37,7 +37,7 @@ camera3dgs() {
 
 # frame [KEY=VALUE]...: a frame of a transforms.json.
 frame() {
-	entry 'file_path transform_matrix w h fl_x fl_y cx cy camera_angle_x camera_angle_y camera_model k1 k2 k3 k4 p1 p2 time' \
+	entry 'file_path transform_matrix w h fl_x fl_y cx cy camera_angle_x camera_angle_y camera_model is_fisheye k1 k2 k3 k4 p1 p2 time' \
 		'file_path="images/b.png"' 'transform_matrix=[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]' "$@"
 }
 

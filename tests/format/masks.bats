@@ -97,7 +97,7 @@ reads() {
 
 @test "view, ref, object" {
 	refuses "key 'view' is missing" "{\"object\":\"o\",$mask}"
-	refuses "key 'view' is not a string" "{\"view\":3,\"object\":\"o\",$mask}"
+	refuses "key 'view' is not a string" "{\"view\":3.5,\"object\":\"o\",$mask}"
 	refuses "key 'view' is empty" "{\"view\":\"\",\"object\":\"o\",$mask}"
 	refuses "key 'view' is '.' or '..'" "{\"view\":\"..\",\"object\":\"o\",$mask}"
 	refuses "key 'view' has a slash" "{\"view\":\"/v\",\"object\":\"o\",$mask}"
@@ -107,7 +107,7 @@ reads() {
 	refuses "key 'object' is not UTF-8 at byte 1" "{\"view\":\"v\",\"object\":\"$(printf '\xff')\",$mask}"
 	refuses "key 'ref' is not a string" "{\"view\":\"v\",\"ref\":[],\"object\":\"o\",$mask}"
 	refuses "key 'ref' is empty" "{\"view\":\"v\",\"ref\":\"\",\"object\":\"o\",$mask}"
-	refuses "key 'object' is not a string" "{\"view\":\"v\",\"object\":7,$mask}"
+	refuses "key 'object' is not a string" "{\"view\":\"v\",\"object\":true,$mask}"
 	refuses "neither key 'ref' nor key 'object'" "{\"view\":\"v\",$mask}"
 	refuses "neither key 'ref' nor key 'object'" "{\"view\":\"v\",\"ref\":null,$mask}"
 }

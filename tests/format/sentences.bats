@@ -24,6 +24,14 @@ refuses() {
 	says 0 'out: ok: refer.text, 3 sentences, 2 words, 24 columns, encoder 6c0c28a4bc757d74' "$BIN/gs-check" out
 }
 
+@test "names that are whole numbers" {
+	echo '{"ref":1,"object":20,"text":"t","views":[3,"v"]}' >x
+	"$BIN/text-encode" --model "$MODEL" -o out x
+	[ "$(head -c 4000 out | strings | grep -c '"refs":"\[\\"1\\"\]".*"objects":"\[\\"20\\"\]"\|"objects":"\[\\"20\\"\]".*"refs":"\[\\"1\\"\]"')" = 1 ]
+	rm out
+	refuses "4: ref '1' is already on line 3" '{"ref":1,"object":"o","text":"t"}' '{"ref":"1","object":"o","text":"t"}'
+}
+
 @test "lines that are not objects" {
 	refuses '3: not JSON at column 8' '{"ref":x}'
 	refuses '3: not a JSON object' '["ref"]'
@@ -40,7 +48,7 @@ refuses() {
 	refuses "3: key 'ref' is missing" '{"object":"o","text":"t"}'
 	refuses "3: key 'object' is missing" '{"ref":"a","text":"t"}'
 	refuses "3: key 'text' is missing" '{"ref":"a","object":"o","text":null}'
-	refuses "3: key 'ref' is not a string" '{"ref":1,"object":"o","text":"t"}'
+	refuses "3: key 'ref' is not a string" '{"ref":1.5,"object":"o","text":"t"}'
 	refuses "3: key 'text' is not a string" '{"ref":"a","object":"o","text":["t"]}'
 	refuses "3: key 'split' is not a string" '{"ref":"a","object":"o","text":"t","split":1}'
 	refuses "3: key 'ref' is empty" '{"ref":"","object":"o","text":"t"}'
@@ -64,7 +72,7 @@ refuses() {
 @test "split and views" {
 	refuses "3: key 'split' is 'val', not 'train' or 'test'" '{"ref":"a","object":"o","text":"t","split":"val"}'
 	refuses "3: key 'views' is not a list" '{"ref":"a","object":"o","text":"t","views":"v"}'
-	refuses "3: key 'views' holds something other than strings" '{"ref":"a","object":"o","text":"t","views":["v",1]}'
+	refuses "3: key 'views' holds something other than strings" '{"ref":"a","object":"o","text":"t","views":["v",1.5]}'
 	refuses "3: key 'views': item '' is empty" '{"ref":"a","object":"o","text":"t","views":[""]}'
 	refuses "3: key 'views': item 'a/b' has a slash" '{"ref":"a","object":"o","text":"t","views":["v","a/b"]}'
 	refuses "3: key 'views': item '..' is '.' or '..'" '{"ref":"a","object":"o","text":"t","views":[".."]}'
@@ -89,13 +97,13 @@ refuses() {
 
 @test "objects, view and kind" {
 	refuses "3: key 'objects' is not a list" '{"ref":"a","objects":"o","text":"t"}'
-	refuses "3: key 'objects' holds something other than strings" '{"ref":"a","objects":[1],"text":"t"}'
+	refuses "3: key 'objects' holds something other than strings" '{"ref":"a","objects":[1e15],"text":"t"}'
 	refuses "3: key 'objects': item '' is empty" '{"ref":"a","objects":[""],"text":"t"}'
 	refuses "3: key 'objects' names 'o' twice" '{"ref":"a","objects":["o","p","o"],"text":"t"}'
 	refuses "3: key 'object' is 'x', but the one of 'objects' 'o'" '{"ref":"a","object":"x","objects":["o"],"text":"t"}'
 	refuses "3: key 'object' is missing" '{"ref":"a","objects":["o","p"],"text":"t","split":"train"}'
 	"$BIN/text-encode" --model "$MODEL" -o - <<<'{"ref":"a","objects":[],"text":"t"}' | head -c 4000 | grep -qa '"objects":"\[\\"\\"\]"'
-	refuses "3: key 'view' is not a string" '{"ref":"a","object":"o","text":"t","view":1}'
+	refuses "3: key 'view' is not a string" '{"ref":"a","object":"o","text":"t","view":[]}'
 	refuses "3: key 'view' is empty" '{"ref":"a","object":"o","text":"t","view":""}'
 	refuses "3: key 'kind' is empty" '{"ref":"a","object":"o","text":"t","kind":""}'
 	refuses "3: key 'kind' is not UTF-8 at byte 1" "$(printf '{"ref":"a","object":"o","text":"t","kind":"\xff"}')"

@@ -75,6 +75,18 @@ static void naming(void)
 		LIST("0002", "cam1_0001", "cam2_0001"));
 }
 
+static void paths(void)
+{
+	static const char *const pairs[][2] = {{"..\\a.jpg", "../a.jpg"}, {"x/../a", "a"}, {"/../a", "/../a"},
+		{"../../x/../a", "../../a"}, {"x/..", "x/.."}, {"C:\\..\\.\\x//..\\a", "/../a"}, {"ab/c/..//d/.", "ab/d/."}};
+	struct err e;
+
+	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
+		SCOPED char *image = view_image(pairs[i][0], &e);
+		CHECK(!strcmp(image, pairs[i][1]), "%s is %s, not %s", pairs[i][0], image, pairs[i][1]);
+	}
+}
+
 static void faults(void)
 {
 	struct cameras c;
@@ -86,6 +98,11 @@ static void faults(void)
 		"%s", e.message);
 	cameras_free(&c);
 	make_views(&c, LIST("x/a.jpg", "x//a.jpg", "./x/a.jpg"));
+	CHECK(views_finish(&c, "file", &e) &&
+			!strcmp(e.message, "file: two views are of 'x/a.jpg': take one out"),
+		"%s", e.message);
+	cameras_free(&c);
+	make_views(&c, LIST("x/a.jpg", "x/y/z/../../a.jpg"));
 	CHECK(views_finish(&c, "file", &e) &&
 			!strcmp(e.message, "file: two views are of 'x/a.jpg': take one out"),
 		"%s", e.message);
@@ -222,6 +239,7 @@ int main(void)
 {
 	naming();
 	spread();
+	paths();
 	faults();
 	shift();
 	relative_paths();
