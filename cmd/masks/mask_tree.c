@@ -8,6 +8,7 @@
 #include "geom/views.h"
 
 #include <dirent.h>
+#include <strings.h>
 
 struct walk {
 	const char *dir;
@@ -137,31 +138,51 @@ static int read_classes(struct walk *w, struct err *e)
 						      !(w->classes = name_copy(text, e))));
 }
 
-/* How many pictures there are, and of how many the folder or the picture is named as a view is. */
+/* How surely the folders and the pictures are named as views are: of a scene the surest, else the least sure
+ * of them. */
 struct order {
 	const struct cameras *scene;
-	size_t pictures, by_view, by_thing;
+	size_t pictures;
+	int by_view, by_thing;
 };
 
-/* Whether the scene has a view of this name; of no known scene, whether it has three digits in a row, as
- * photographs have that are numbered. */
+static int begins(const char *name, const char *const *words)
+{
+	while (*words && strncasecmp(name, *words, strlen(*words)) != 0)
+		words++;
+	return *words != NULL;
+}
+
+/* Whether the scene has a view of this name. Of no known scene, from 0 on: a number, three digits in a row,
+ * as photographs have that are numbered, after a photograph's word; but not what says that it is a thing's.
+ */
 static int is_view(const struct cameras *scene, const char *name)
 {
+	static const char digits[] = "0123456789",
+			  *const things[] = {"obj", "inst", "mask", "thing", "label", "class", "id", "seg",
+				  "track", NULL},
+			  *const views[] = {"view", "frame", "im", "dsc", "photo", "cam", NULL};
+	const int is_number = !name[strspn(name, digits)], is_worded = begins(name, views);
+
 	if (scene)
 		return cameras_find(scene, name) != NULL;
-	while (*name && strspn(name, "0123456789") < 3)
+	if (begins(name, things))
+		return 0;
+	while (*name && strspn(name, digits) < 3)
 		name++;
-	return *name != 0;
+	return *name ? 2 + is_worded : is_number;
 }
 
 static int look(void *to, const char *path, const char *view, const char *name, struct err *e)
 {
 	struct order *o = to;
+	const int by_view = is_view(o->scene, view), by_thing = is_view(o->scene, name);
 
 	(void)path, (void)e;
-	o->pictures++;
-	o->by_view += (size_t)is_view(o->scene, view);
-	o->by_thing += (size_t)is_view(o->scene, name);
+	if (!o->pictures++ || (by_view < o->by_view) == !o->scene)
+		o->by_view = by_view;
+	if (o->pictures == 1 || (by_thing < o->by_thing) == !o->scene)
+		o->by_thing = by_thing;
 	return 0;
 }
 
@@ -172,7 +193,11 @@ int mask_tree_each(const char *dir, const struct cameras *scene, mask_tree_put *
 	struct walk w = {.dir = dir, .put = look, .to = &order, .is_by_thing = -1};
 	int bad = read_classes(&w, e) || walk_folders(&w, e);
 
-	w.is_by_thing = !order.by_view && order.by_thing && (scene || order.by_thing == order.pictures);
+	w.is_by_thing = order.by_thing > order.by_view;
+	if (!bad && !scene && order.by_view && order.by_view == order.by_thing)
+		bad = err_set(e, ERR_FORMAT,
+			"%s: numbered folders of numbered pictures: --undistort SCENE tells, by the scene's views, which of them are things",
+			dir);
 	w.put = put;
 	w.to = to;
 	bad = bad || walk_folders(&w, e);

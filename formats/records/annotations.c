@@ -60,6 +60,7 @@ static int read_shape(struct reading *r, const cJSON *shape, const char *view, s
 	const char *label, *type = "polygon", *mask = NULL;
 	size_t count;
 
+	reading_group(r, shape);
 	if (json_string(shape, "label", 1, &label, r->where, e) < 0 ||
 		json_string(shape, "shape_type", 0, &type, r->where, e) < 0 ||
 		reading_points(r, points, &count, e))
@@ -232,7 +233,7 @@ static int read_any(struct reading *r, const cJSON *root, const char *path, stru
 
 int annotations_read(struct annotations *a, const char *path, struct err *e)
 {
-	struct reading r = {.to = a, .path = file_name(path), .score = NAN};
+	struct reading r = {.to = a, .path = file_name(path), .score = NAN, .group = NAN};
 	SCOPED_BY(json_release) cJSON *root = json_read(path, e);
 
 	*a = (struct annotations){0};

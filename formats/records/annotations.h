@@ -14,6 +14,7 @@ struct annotation {
 	struct rle mask;	  /* all shapes of the label */
 	struct mask_place *boxes; /* of ISAT and LERF-OVS, a box for each shape that has one; else NULL */
 	size_t shapes;
+	double group;	/* by which the file tells things of one label apart, or NAN */
 	int is_outline; /* a polygon is among them, so that what lies on it may be in it */
 };
 

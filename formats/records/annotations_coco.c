@@ -170,6 +170,7 @@ static int read_ref(struct reading *r, const cJSON *item, size_t before, struct 
 static int read_mask(struct reading *r, const cJSON *item, const char *view, const char *name, struct err *e)
 {
 	const size_t before = r->to->n;
+	reading_group(r, item);
 	const int bad = read_score(r, item, e) || read_segmentation(r, item, view, name, e) ||
 			read_ref(r, item, before, e);
 

@@ -65,6 +65,31 @@ int reading_size(struct reading *r, const cJSON *object, const char *height, con
 	return 0;
 }
 
+void reading_group(struct reading *r, const cJSON *item)
+{
+	static const char *const keys[] = {"group_id", "track_id", "instance_id"};
+	const cJSON *found = NULL;
+
+	for (size_t i = 0; i < sizeof keys / sizeof *keys && !cJSON_IsNumber(found); i++) {
+		found = json_get(item, keys[i]);
+		found = found ? found : json_get(json_get(item, "attributes"), keys[i]);
+	}
+	r->group = cJSON_IsNumber(found) ? found->valuedouble : NAN;
+}
+
+/* The annotation that a person's shape of this name goes on with; NULL where there is none. */
+static struct annotation *find_earlier(const struct reading *r, const char *view, const char *name)
+{
+	struct annotations *a = r->to;
+
+	for (size_t i = 0; i < a->n && isnan(r->score); i++)
+		if (isnan(a->items[i].score) && !strcmp(a->items[i].view, view) &&
+			!strcmp(a->items[i].name, name) && a->items[i].mask.height == r->height &&
+			a->items[i].mask.width == r->width)
+			return &a->items[i];
+	return NULL;
+}
+
 struct annotation *reading_find(struct reading *r, const char *view, const char *label, struct err *e)
 {
 	struct annotations *a = r->to;
@@ -74,12 +99,16 @@ struct annotation *reading_find(struct reading *r, const char *view, const char 
 		return NULL;
 	const char *name = name_trim(copy);
 	const char *reason = name_fault(name, NAME_DATA, fault);
+	struct annotation *earlier = find_earlier(r, view, name);
 
-	for (size_t i = 0; i < a->n && isnan(r->score); i++)
-		if (isnan(a->items[i].score) && !strcmp(a->items[i].view, view) &&
-			!strcmp(a->items[i].name, name) && a->items[i].mask.height == r->height &&
-			a->items[i].mask.width == r->width)
-			return &a->items[i];
+	if (earlier && fabs(earlier->group - r->group) > 0 && !name_is_nothing(name)) {
+		err_file(e, r->where,
+			"'%.80s' is here two things, numbers %g and %g of their group or track: things that are alike need labels of their own, as '%.80s 1' and '%.80s 2'",
+			name, earlier->group, r->group, name, name);
+		return NULL;
+	}
+	if (earlier)
+		return earlier;
 	if (reason) {
 		err_file(e, r->where, "the label %s", reason);
 		return NULL;
@@ -87,8 +116,10 @@ struct annotation *reading_find(struct reading *r, const char *view, const char 
 	if (mem_grow((void **)&a->items, &a->capacity, a->n + 1, sizeof *a->items, "annotations", e))
 		return NULL;
 	struct annotation *one = &a->items[a->n++];
-	*one = (struct annotation){
-		.view = mem_strdup(view, e), .name = mem_strdup(name, e), .score = r->score};
+	*one = (struct annotation){.view = mem_strdup(view, e),
+		.name = mem_strdup(name, e),
+		.score = r->score,
+		.group = r->group};
 	const uint32_t none[] = {(uint32_t)(r->height * r->width)};
 	return one->view && one->name && !rle_from_runs(&one->mask, none, 1, r->height, r->width, e) ? one
 												     : NULL;

@@ -17,6 +17,7 @@ struct reading {
 	char where[WHERE]; /* "path: shape 3", for messages */
 	int height, width;
 	double score; /* of the detector's annotation that is read, or NAN */
+	double group; /* of the shape or annotation that is read, or NAN */
 	uint8_t *flips, *mask;
 	double *points;
 	size_t flips_room, mask_room, points_room;
@@ -27,8 +28,12 @@ int reading_size(
 	struct reading *r, const cJSON *object, const char *height, const char *width, struct err *e);
 
 /* The annotation of a view and name: an earlier one, or a new one of the reading's size; a new one for each
- * thing that a detector found. NULL with *e. */
+ * thing that a detector found. NULL with *e, as where the earlier one is of another group. */
 struct annotation *reading_find(struct reading *r, const char *view, const char *name, struct err *e);
+
+/* Notes by which number a shape or annotation is told from others of its label: LabelMe's "group_id", CVAT's
+ * "track_id" and the like. */
+void reading_group(struct reading *r, const cJSON *item);
 
 /* A list of numbers, or of pairs of numbers, into r->points: *count points. */
 int reading_points(struct reading *r, const cJSON *list, size_t *count, struct err *e);

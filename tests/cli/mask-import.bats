@@ -297,6 +297,20 @@ coco() {
 		annotations: [{image_id: 1, category_id: 1, segmentation: $s, bbox: [2, 2, 4, 6]}]}'
 }
 
+@test "things of one label that a file numbers are errors; parts of one are not" {
+	local shape='"label":"cup","points":[[1,1],[3,1],[3,3],[1,3]]' two="'cup' is here two things, numbers 1 and 2 of their group or track: things that are alike need labels of their own, as 'cup 1' and 'cup 2'"
+	labelme "{$shape,\"group_id\":1}" "{$shape,\"group_id\":2}" >a.json
+	says 3 "mask-import: a.json: shape 1: $two" "$BIN/mask-import" -o none a.json
+	coco '[[2,2,6,2,6,8,2,8]]' | jq '.annotations[0].attributes.track_id = 1 | .annotations += [.annotations[0] | .attributes.track_id = 2]' >b.json
+	says 3 "mask-import: b.json: annotation 1: $two" "$BIN/mask-import" -o none b.json
+	jq '.annotations |= map(.score = 0.5)' b.json >c.json
+	[ "$("$BIN/mask-import" c.json | wc -l)" = 2 ]
+	for group in 1 null '"a"'; do
+		labelme "{$shape,\"group_id\":1}" "{$shape,\"group_id\":$group}" "{${shape/cup/bg},\"group_id\":1}" "{${shape/cup/bg},\"group_id\":2}" >a.json
+		[ "$("$BIN/mask-import" -q a.json | wc -l)" = 1 ]
+	done
+}
+
 @test "labels of another picture's size, in shares, or nested are errors; what has no area is named" {
 	wrong() {
 		coco "$1" >x.json
@@ -539,6 +553,27 @@ mask-import: warning: by: 1 pictures that are no PNG are left out" "$BIN/mask-im
 	scene s
 	printf '[%s,%s]' "$(view name='"a"' width=2 height=1)" "$(view name='"b"' width=2 height=1)" >s/cameras.json
 	[ "$("$BIN/mask-import" -q --undistort s by | jq -r .view | tr '\n' ' ')" = "a b " ]
+	# without a scene: a folder and its picture, and the view and the thing; none where it is either
+	picture one.png 'ffffff 000000'
+	while read -r path view thing; do
+		rm -rf numbered
+		mkdir -p "numbered/${path%/*}"
+		cp one.png "numbered/$path.png"
+		[ "$("$BIN/mask-import" -q numbered | jq -r '.view + " " + .object')" = "$view $thing" ] || [ "$view" = - ]
+		[ "$view" != - ] || says 3 "mask-import: numbered: numbered folders of numbered pictures: --undistort SCENE tells, by the scene's views, which of them are things" "$BIN/mask-import" -o none numbered
+	done <<-'END'
+		obj_001/0001 0001 obj_001
+		cup/1 1 cup
+		mask3/12 12 mask3
+		cup_001/frame_0001 frame_0001 cup_001
+		IMG_0001/001 IMG_0001 001
+		view_01/obj_001 view_01 obj_001
+		0001/12 0001 12
+		0/apple 0 apple
+		0001/00001 -
+		1/2 -
+		garden_001/001 -
+	END
 	mkdir -p cvat/SegmentationClass cvat/SegmentationObject
 	picture cvat/SegmentationClass/f.png '800000 008000' '000000 000000'
 	cp cvat/SegmentationClass/f.png cvat/SegmentationObject
