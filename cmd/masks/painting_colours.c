@@ -187,7 +187,8 @@ static uint32_t nearest(const struct painting_names *names, uint32_t colour, int
 }
 
 /* Makes each pixel of a picture that was saved with loss one of the nearest colour. Else what covers much and
- * has no name is a slip of the painter or of the file of names. */
+ * has no name is a slip of the painter or of the file of names, and names between others at edges are an
+ * error. */
 static int check_colours(
 	struct picture_read *p, const struct painting_names *names, const struct report *to, struct err *e)
 {
@@ -235,7 +236,9 @@ static int check_colours(
 							  : "%s: #%06x, %.1f%% of it, has no name",
 				p->path, (unsigned)(colour & (PNG_PAINT_NUMBER - 1)), 100 * share);
 	}
-	return 0;
+	for (size_t i = 0; i < pixels; i++)
+		p->mask[i] = painting_names_find(names, p->paint[i]) != NULL;
+	return png_check_edges(p->path, p->paint, p->mask, p->height, p->width, 0, e);
 }
 
 int painting_put_colours(struct painting_names *names, const char *path, struct warping *w, FILE *out,

@@ -294,10 +294,14 @@ int png_read_labels(const char *path, int32_t **labels, int *height, int *width,
 			out[i] = is_none ? -1 : (int32_t)label;
 		}
 	}
-	*labels = out;
 	*height = job.height;
 	*width = job.width;
 	release(&job);
+	if (out && png_check_edges(job.path, (const uint32_t *)out, NULL, *height, *width, 1, e)) {
+		free(out);
+		out = NULL;
+	}
+	*labels = out;
 	return out ? 0 : -1;
 }
 

@@ -37,6 +37,12 @@ int png_read_paint(const char *path, uint32_t **paint, int *height, int *width, 
 /* Up to 255 the grey 0xrrggbb, else PNG_PAINT_NUMBER and the number. */
 uint32_t png_paint_number(uint32_t number);
 
+/* Refuses paint (height,width), or labels (-1 is none), that was scaled with mixing or saved as a JPEG: of
+ * its edges more than a tenth are of values between those on either side, which are labels of other things.
+ * counts (height,width) has 0 where a value means nothing; NULL: all do. 0, or -1 with *e. */
+int png_check_edges(const char *path, const uint32_t *values, const uint8_t *counts, int height, int width,
+	int is_number, struct err *e);
+
 /* What a stream begins with: PICTURE_PNG or PICTURE_JPEG, whose size it says, or PICTURE_NONE. */
 enum picture_kind { PICTURE_NONE, PICTURE_PNG, PICTURE_JPEG };
 enum picture_kind picture_size(FILE *in, int *height, int *width);

@@ -57,6 +57,17 @@ frame.a plate" ]
 	says 3 "mask-import: map.png: a JPEG, whose colours are not quite those that were painted: save it as PNG" "$BIN/mask-import" --names names -o none map.png
 }
 
+@test "numbers that were scaled with mixing, so that others lie between them, are refused" {
+	rows() { for ((i = 0; i < 40; i++)); do echo "000000 000000 $1 0a0a0a 0a0a0a"; done; }
+	printf '5 cup\n10 plate\n' >names
+	mapfile -t rows < <(rows 050505)
+	picture a.png "${rows[@]}"
+	says_like 3 "mask-import: a.png: at 33% of its edges are values between those on either side, some of them other labels: it was a JPEG" "$BIN/mask-import" --names names -o none a.png
+	mapfile -t rows < <(rows 0a0a0a)
+	picture a.png "${rows[@]}"
+	[ "$("$BIN/mask-import" -q --names names a.png | wc -l)" = 1 ]
+}
+
 @test "what has no name, and a name that has no pixel, are told; -q is silent" {
 	echo '7 plate' >names
 	echo '#ff0000 cup' >>names

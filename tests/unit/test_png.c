@@ -446,6 +446,37 @@ static void test_labels(void)
 		"%s", e.message);
 }
 
+/* Two halves, and a column between them of a value: whether that was mixed of the two. */
+static void test_edges(void)
+{
+	enum { SIDE = 40, NONE = PNG_PAINT_NONE, MANY = PNG_PAINT_NUMBER };
+	static const struct {
+		uint32_t left, between, right;
+		int is_number, is_mixed;
+	} cases[] = {{0, 5, 10, 1, 1}, {10, 5, 0, 1, 1}, {0, 12, 10, 1, 0}, {0, 10, 10, 1, 0},
+		{0, 0x0096, 0x012c, 1, 1}, {0, 0x0096, 0x012c, 0, 0}, {0x800000, 0x404000, 0x008000, 0, 1},
+		{0x800000, 0x404001, 0x008000, 0, 0}, {1, 150 | MANY, 300 | MANY, 0, 1}, {0, NONE, 3, 0, 0},
+		{(uint32_t)-1, 5, 10, 1, 0}};
+	uint8_t counts[SIDE * SIDE] = {0};
+	uint32_t values[SIDE * SIDE];
+	struct err e = {0};
+
+	for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+		for (size_t p = 0; p < SIDE * SIDE; p++)
+			values[p] = p % SIDE < 20    ? cases[i].left
+				    : p % SIDE == 20 ? cases[i].between
+						     : cases[i].right;
+		const int bad = png_check_edges("x", values, NULL, SIDE, SIDE, cases[i].is_number, &e);
+		CHECK(!bad == !cases[i].is_mixed, "%x between %x and %x: %d", cases[i].between, cases[i].left,
+			cases[i].right, bad);
+		CHECK(!png_check_edges("x", values, counts, SIDE, SIDE, cases[i].is_number, &e),
+			"values without a meaning");
+	}
+	CHECK(!strcmp(e.message,
+		      "x: at 33% of its edges are values between those on either side, some of them other labels: it was a JPEG, or scaled with mixing: scale labels to the nearest pixel, and save them as PNG"),
+		"%s", e.message);
+}
+
 int main(void)
 {
 	int fd = mkstemp(path);
@@ -454,6 +485,7 @@ int main(void)
 		return 1;
 	close(fd);
 	test_kinds();
+	test_edges();
 	test_write();
 	test_broken_png();
 	test_jpeg();
