@@ -56,7 +56,7 @@ static int by_id(const void *a, const void *b)
 	return (x->id > y->id) - (x->id < y->id);
 }
 
-int colmap_sort_entries(struct colmap_entries *all, const char *path, struct err *e)
+static int sort_entries(struct colmap_entries *all, const char *path, struct err *e)
 {
 	if (all->n)
 		qsort(all->items, all->n, sizeof *all->items, by_id);
@@ -267,7 +267,7 @@ int colmap_read(struct cameras *c, const char *dir, struct err *e)
 		return err_file(e, dir, "no COLMAP model: no cameras and images, .bin or .txt");
 	const int bad = (path_ends(parts[0], ".bin") ? read_cameras_binary : colmap_read_cameras_text)(
 				&all, parts[0], e) ||
-			colmap_sort_entries(&all, parts[0], e) ||
+			sort_entries(&all, parts[0], e) ||
 			(path_ends(parts[1], ".bin") ? read_images_binary : colmap_read_images_text)(
 				c, &all, parts[1], e) ||
 			views_finish(c, parts[1], e);

@@ -24,7 +24,6 @@ int colmap_set_camera(struct colmap_entry *c, const struct lens_model *m, double
 	const double *params, const char *path, struct err *e);
 int colmap_add_entry(
 	struct colmap_entries *all, const struct colmap_entry *c, const char *path, struct err *e);
-int colmap_sort_entries(struct colmap_entries *all, const char *path, struct err *e);
 
 /* Adds a view: pose is qw qx qy qz tx ty tz, world to camera. */
 int colmap_add_view(struct cameras *c, size_t *capacity, const struct colmap_entries *all,

@@ -13,8 +13,8 @@ const char *view_fault(const struct camera *c);
 int view_set_size(struct camera *c, double width, double height);
 
 /* A photograph's path as a foreign file has it, written one way: slashes for backslashes and no letter of a
- * drive, as Windows has them, no ".", no ".." after a folder and no slash twice, in Unicode's composed form. free() it; NULL with *e
- * set when memory is out. */
+ * drive, as Windows has them, no ".", no ".." after a folder and no slash twice, in Unicode's composed form.
+ * free() it; NULL with *e set when memory is out. */
 char *view_image(const char *path, struct err *e);
 
 /* Takes cameras whose `image` is that path and whose `name` is NULL.

@@ -29,3 +29,17 @@ picture() {
 		chunk IEND ''
 	} | xxd -r -p >"$file"
 }
+
+# says_like STATUS BEGINNING COMMAND...
+says_like() {
+	local status=$1 beginning=$2
+	shift 2
+	run "$@"
+	[ "$status" = 3 ] && [[ $output == "$beginning"* ]]
+}
+
+# labelme SHAPE...: a LabelMe file of 6 by 4 pixels on stdout.
+labelme() {
+	local IFS=,
+	printf '{"version":"5.5.0","flags":{},"shapes":[%s],"imagePath":"..\\\\photos\\\\view_1.jpg","imageData":null,"imageHeight":4,"imageWidth":6}\n' "$*"
+}

@@ -78,7 +78,8 @@ static void naming(void)
 static void paths(void)
 {
 	static const char *const pairs[][2] = {{"..\\a.jpg", "../a.jpg"}, {"x/../a", "a"}, {"/../a", "/../a"},
-		{"../../x/../a", "../../a"}, {"x/..", "x/.."}, {"C:\\..\\.\\x//..\\a", "/../a"}, {"ab/c/..//d/.", "ab/d/."}};
+		{"../../x/../a", "../../a"}, {"x/..", "x/.."}, {"C:\\..\\.\\x//..\\a", "/../a"},
+		{"ab/c/..//d/.", "ab/d/."}};
 	struct err e;
 
 	for (size_t i = 0; i < sizeof pairs / sizeof *pairs; i++) {
