@@ -1,5 +1,6 @@
 #include "cmd/feature/feature_lifting.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "formats/images/png.h"
 #include "lift/source_weights.h"
@@ -206,9 +207,7 @@ static int by_confidence(const void *a, const void *b)
 {
 	const struct painted *x = a, *y = b;
 
-	if (x->confidence < y->confidence || x->confidence > y->confidence)
-		return x->confidence < y->confidence ? -1 : 1;
-	return (x->at > y->at) - (x->at < y->at);
+	return x->confidence != y->confidence ? COMPARE(x->confidence, y->confidence) : COMPARE(x->at, y->at);
 }
 
 static int paint(const struct feature_maps *m, size_t at, int height, int width, struct feature_sources *s,

@@ -40,6 +40,14 @@ int synth_folder_end(struct synth_folder *f, struct err *e);
 /* Removes outputs that are still open. */
 void synth_folder_abort(struct synth_folder *f);
 
+/* A file of the folder, by what writes all of it. Returns 0, or -1 with *e set. */
+int synth_put_file(const struct synth_folder *f, const char *name, void (*put)(FILE *out, const void *folder),
+	struct err *e);
+
+/* What a test sentence's record begins with: what it means, its text and its kind. The record stays open. */
+void synth_put_sentence(FILE *out, const struct synth_folder *f, const char *ref, uint64_t objects,
+	const char *text, const char *kind);
+
 /* The unseen split, of a struct synth_folder: unseen.jsonl, and parses.unseen.jsonl. */
 void synth_unseen_put(FILE *out, const void *folder);
 void synth_unseen_put_parses(FILE *out, const void *folder);

@@ -17,12 +17,30 @@ static int open_in(struct file_out *out, const char *dir, const char *name, stru
 	return !path || file_out_open(out, path, e) ? -1 : 0;
 }
 
-static int put_file(const struct synth_folder *f, const char *name,
-	void (*put)(FILE *out, const void *folder), struct err *e)
+int synth_put_file(const struct synth_folder *f, const char *name, void (*put)(FILE *out, const void *folder),
+	struct err *e)
 {
 	SCOPED char *path = file_join(f->dir, name, "", e);
 
 	return path ? file_out_put(path, put, f, e) : -1;
+}
+
+void synth_put_sentence(FILE *out, const struct synth_folder *f, const char *ref, uint64_t objects,
+	const char *text, const char *kind)
+{
+	const char *comma = "";
+
+	fprintf(out, "{\"ref\":\"%s\"", ref);
+	for (int i = 0; i < f->scene->object_count; i++)
+		if (objects == (uint64_t)1 << i)
+			fprintf(out, ",\"object\":\"%s\"", f->scene->objects[i].name);
+	fputs(",\"objects\":[", out);
+	for (int i = 0; i < f->scene->object_count; i++)
+		if (objects >> i & 1) {
+			fprintf(out, "%s\"%s\"", comma, f->scene->objects[i].name);
+			comma = ",";
+		}
+	fprintf(out, "],\"text\":\"%s\",\"split\":\"test\",\"kind\":\"%s\"", text, kind);
 }
 
 /* Makes the folder of the photographs and tells each camera the name of its own. */
@@ -96,10 +114,11 @@ static void put_test_views(FILE *out, const void *folder)
 int synth_folder_begin(struct synth_folder *f, struct err *e)
 {
 	return -(name_photographs(f, e) || write_model(f, e) ||
-		 put_file(f, "sentences.jsonl", put_sentences, e) ||
-		 put_file(f, "unseen.jsonl", synth_unseen_put, e) ||
-		 put_file(f, "parses.unseen.jsonl", synth_unseen_put_parses, e) ||
-		 put_file(f, "test-views", put_test_views, e) || put_file(f, "boxes.jsonl", put_boxes, e) ||
+		 synth_put_file(f, "sentences.jsonl", put_sentences, e) ||
+		 synth_put_file(f, "unseen.jsonl", synth_unseen_put, e) ||
+		 synth_put_file(f, "parses.unseen.jsonl", synth_unseen_put_parses, e) ||
+		 synth_put_file(f, "test-views", put_test_views, e) ||
+		 synth_put_file(f, "boxes.jsonl", put_boxes, e) ||
 		 open_in(&f->candidates, f->dir, "candidates.jsonl", e) ||
 		 open_in(&f->test_candidates, f->dir, "candidates.test.jsonl", e) ||
 		 open_in(&f->truth, f->dir, "truth.jsonl", e) ||
@@ -243,7 +262,7 @@ int synth_folder_end(struct synth_folder *f, struct err *e)
 {
 	return -(file_out_commit(&f->candidates, e) || file_out_commit(&f->test_candidates, e) ||
 		 file_out_commit(&f->truth, e) || file_out_commit(&f->whole, e) ||
-		 put_file(f, "statistics.json", put_statistics, e));
+		 synth_put_file(f, "statistics.json", put_statistics, e));
 }
 
 void synth_folder_abort(struct synth_folder *f)

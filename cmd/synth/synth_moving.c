@@ -35,28 +35,6 @@ static void put_transforms(FILE *out, const void *folder)
 	fputs("]}\n", out);
 }
 
-static void put_sentence(FILE *out, const struct synth_folder *f, const struct synth_moving_sentence *x,
-	const char *kind, int number)
-{
-	const char *comma = "";
-
-	fprintf(out, "{\"ref\":\"%s-%d\"", kind, number);
-	for (int i = 0; i < f->scene->object_count; i++)
-		if (x->objects == (uint64_t)1 << i)
-			fprintf(out, ",\"object\":\"%s\"", f->scene->objects[i].name);
-	fputs(",\"objects\":[", out);
-	for (int i = 0; i < f->scene->object_count; i++)
-		if (x->objects >> i & 1) {
-			fprintf(out, "%s\"%s\"", comma, f->scene->objects[i].name);
-			comma = ",";
-		}
-	fprintf(out, "],\"text\":\"%s\",\"split\":\"test\",\"kind\":\"%s\"", x->text, kind);
-	if (x->objects && !x->is_several)
-		fprintf(out, ",\"when\":[%.17g,%.17g]", synth_moves_time(f->moves->times, x->first),
-			synth_moves_time(f->moves->times, x->last));
-	fputs("}\n", out);
-}
-
 static void put_said(FILE *out, const struct synth_folder *f, const struct synth_moving_sentences *said)
 {
 	for (size_t i = 0; i < said->n; i++) {
@@ -64,7 +42,13 @@ static void put_said(FILE *out, const struct synth_folder *f, const struct synth
 		const char *kind = !x->objects	   ? "motion-absent"
 				   : x->is_several ? "motion-several"
 						   : synth_motion_name(x->kind);
-		put_sentence(out, f, x, kind, (int)i + 1);
+		char ref[64];
+		snprintf(ref, sizeof ref, "%s-%zu", kind, i + 1);
+		synth_put_sentence(out, f, ref, x->objects, x->text, kind);
+		if (x->objects && !x->is_several)
+			fprintf(out, ",\"when\":[%.17g,%.17g]", synth_moves_time(f->moves->times, x->first),
+				synth_moves_time(f->moves->times, x->last));
+		fputs("}\n", out);
 	}
 }
 
@@ -76,14 +60,6 @@ static void put_moving(FILE *out, const void *folder)
 static void put_moving_kept(FILE *out, const void *folder)
 {
 	put_said(out, folder, ((const struct synth_folder *)folder)->moving + 1);
-}
-
-static int put_file(const struct synth_folder *f, const char *name,
-	void (*put)(FILE *out, const void *folder), struct err *e)
-{
-	SCOPED char *path = file_join(f->dir, name, "", e);
-
-	return path ? file_out_put(path, put, f, e) : -1;
 }
 
 int synth_moving_write(const struct synth_folder *f, struct err *e)
@@ -101,7 +77,7 @@ int synth_moving_write(const struct synth_folder *f, struct err *e)
 		if (!path || ply_write(&f->scene->splats, offset, path, e))
 			return -1;
 	}
-	return -(put_file(f, "transforms.json", put_transforms, e) ||
-		 put_file(f, "moving.jsonl", put_moving, e) ||
-		 put_file(f, "moving-kept-back.jsonl", put_moving_kept, e));
+	return -(synth_put_file(f, "transforms.json", put_transforms, e) ||
+		 synth_put_file(f, "moving.jsonl", put_moving, e) ||
+		 synth_put_file(f, "moving-kept-back.jsonl", put_moving_kept, e));
 }

@@ -130,36 +130,17 @@ static void put_parse(FILE *to, const struct synth_sentence *x)
 	fputs("}\n", to);
 }
 
-static void put_sentence(FILE *to, const struct synth_sentence *x, const struct synth_object *objects,
-	const struct cameras *cameras)
-{
-	const char *comma = "";
-	uint64_t set = x->objects;
-
-	fprintf(to, "{\"ref\":\"%s\"", x->ref);
-	for (int i = 0; i < SYNTH_MAX_OBJECTS; i++)
-		if (set == (uint64_t)1 << i)
-			fprintf(to, ",\"object\":\"%s\"", objects[i].name);
-	fputs(",\"objects\":[", to);
-	for (int i = 0; i < SYNTH_MAX_OBJECTS; i++)
-		if (set >> i & 1) {
-			fprintf(to, "%s\"%s\"", comma, objects[i].name);
-			comma = ",";
-		}
-	fputc(']', to);
-	fprintf(to, ",\"text\":\"%s\",\"split\":\"test\",\"kind\":\"%s\"", x->text,
-		synth_unseen_kind_name(x->kind));
-	if (x->view >= 0)
-		fprintf(to, ",\"view\":\"%s\"", cameras->views[x->view].name);
-	fputs("}\n", to);
-}
-
 void synth_unseen_put(FILE *out, const void *folder)
 {
 	const struct synth_folder *f = folder;
 
-	for (size_t i = 0; i < f->unseen->n; i++)
-		put_sentence(out, &f->unseen->items[i], f->scene->objects, &f->scene->cameras);
+	for (size_t i = 0; i < f->unseen->n; i++) {
+		const struct synth_sentence *x = &f->unseen->items[i];
+		synth_put_sentence(out, f, x->ref, x->objects, x->text, synth_unseen_kind_name(x->kind));
+		if (x->view >= 0)
+			fprintf(out, ",\"view\":\"%s\"", f->scene->cameras.views[x->view].name);
+		fputs("}\n", out);
+	}
 }
 
 void synth_unseen_put_parses(FILE *out, const void *folder)

@@ -1,5 +1,6 @@
 #include "cmd/text/questions.h"
 
+#include "base/name.h"
 #include "base/utf8.h"
 
 #include <errno.h>
@@ -10,19 +11,13 @@
 
 static const char too_long[] = "is longer than 2000 bytes";
 
-/* In plain characters, without the blanks at its ends: its new length. */
-static size_t trim(char *text)
+/* In plain characters, without the blanks at its ends: whether anything is left. */
+static int trim(char *text)
 {
-	utf8_plain(text);
-	const size_t blank = strspn(text, " \t\r\n");
-	size_t n = strlen(text);
+	const char *kept = name_trim(text);
 
-	while (n > blank && strchr(" \t\r\n", text[n - 1]))
-		n--;
-	n = n > blank ? n - blank : 0;
-	memmove(text, text + blank, n);
-	text[n] = 0;
-	return n;
+	memmove(text, kept, strlen(kept) + 1);
+	return *text != 0;
 }
 
 /* Why a text of n bytes is no question; NULL: it may be one. */

@@ -21,48 +21,62 @@ int anysplats_is_meta(const char *path)
 	return !strcmp(path_last(path, &length), "meta.json");
 }
 
+/* In the order of enum anysplats_format. A .splat begins as anything, and .spz is written in versions. */
+static const struct {
+	const char *tail;
+	int (*begins)(const struct file_map *map);
+	anysplats_reader *read;
+	int (*write)(const struct splats *s, const double offset[3], const char *path, struct err *e);
+} formats[ANYSPLATS_FORMATS] = {{".ply", NULL, NULL, ply_write},
+	{".splat", NULL, splat_read_map, splat_write}, {".spz", spz_is, spz_read_map, NULL},
+	{".glb", glb_is, glb_read_map, glb_write}, {".sog", sog_is, sog_read_map, sog_write}};
+
+static int read_any(struct splats *s, double offset[3], struct rows_report *report, const char *path,
+	const struct ply_like *like, struct err *e)
+{
+	const char *name = file_name(path);
+	SCOPED_BY(file_unmap) struct file_map map = {0};
+
+	if (anysplats_is_meta(path))
+		return sog_read_meta(s, offset, report, path, e);
+	if (file_map(path, &map, e))
+		return -1;
+	if (map.len >= 4 && (!memcmp(map.data, "ply\n", 4) || !memcmp(map.data, "ply\r", 4)))
+		return ply_read_like(s, offset, report, name, &map, like, e);
+	if (!spz_is(&map) && !glb_is(&map) && foreign_file(name, FOREIGN_SPLATS, map.data, map.len, e))
+		return -1;
+	for (int i = ANYSPLATS_FORMATS - 1; i > ANYSPLATS_PLY; i--)
+		if ((formats[i].begins && formats[i].begins(&map)) || path_ends(name, formats[i].tail))
+			return formats[i].read(s, offset, report, name, &map, e);
+	return ply_read_like(s, offset, report, name, &map, like, e);
+}
+
+int anysplats_read_like(struct splats *s, double offset[3], struct rows_report *report, const char *path,
+	const struct ply_like *like, struct err *e)
+{
+	struct rows_report local = {0};
+
+	*s = (struct splats){0};
+	const int bad = read_any(s, offset, &local, path, like, e);
+	if (bad)
+		splats_free(s);
+	if (bad || !report)
+		free(local.dropped);
+	if (report)
+		*report = bad ? (struct rows_report){0} : local;
+	return bad ? -1 : 0;
+}
+
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e)
 {
 	return anysplats_read_like(s, offset, report, path, NULL, e);
 }
 
-int anysplats_read_like(struct splats *s, double offset[3], struct rows_report *report, const char *path,
-	const struct ply_like *like, struct err *e)
-{
-	const char *name = file_name(path);
-	SCOPED_BY(file_unmap) struct file_map map = {0};
-
-	gaussian_rows_none(s, report);
-	if (anysplats_is_meta(path))
-		return sog_read_meta(s, offset, report, path, e);
-	if (file_map(path, &map, e))
-		return -1;
-	const int is_ply = map.len >= 4 && (!memcmp(map.data, "ply\n", 4) || !memcmp(map.data, "ply\r", 4));
-	if (!is_ply && !spz_is(&map) && !glb_is(&map) &&
-		foreign_file(name, FOREIGN_SPLATS, map.data, map.len, e))
-		return -1;
-	if (!is_ply && (sog_is(&map) || path_ends(name, ".sog")))
-		return sog_read_map(s, offset, report, name, &map, e);
-	if (!is_ply && (glb_is(&map) || path_ends(name, ".glb")))
-		return glb_read_map(s, offset, report, name, &map, e);
-	if (!is_ply && (spz_is(&map) || path_ends(name, ".spz")))
-		return spz_read_map(s, offset, report, name, &map, e);
-	if (!is_ply && path_ends(name, ".splat"))
-		return splat_read_map(s, offset, report, name, &map, e);
-	return ply_read_like(s, offset, report, name, &map, like, e);
-}
-
 int anysplats_format_of(const char *path)
 {
-	static const char *const tails[] = {[ANYSPLATS_PLY] = ".ply",
-		[ANYSPLATS_SPLAT] = ".splat",
-		[ANYSPLATS_SPZ] = ".spz",
-		[ANYSPLATS_GLB] = ".glb",
-		[ANYSPLATS_SOG] = ".sog"};
-
 	for (int i = 0; i < ANYSPLATS_FORMATS; i++)
-		if (path_ends(path, tails[i]))
+		if (path_ends(path, formats[i].tail))
 			return i;
 	return -1;
 }
@@ -70,18 +84,8 @@ int anysplats_format_of(const char *path)
 int anysplats_write(const struct splats *s, const double offset[3], enum anysplats_format format,
 	int spz_version, const char *path, struct err *e)
 {
-	switch (format) {
-	case ANYSPLATS_SPLAT:
-		return splat_write(s, offset, path, e);
-	case ANYSPLATS_SPZ:
-		return spz_write(s, offset, spz_version, path, e);
-	case ANYSPLATS_SOG:
-		return sog_write(s, offset, path, e);
-	case ANYSPLATS_GLB:
-		return glb_write(s, offset, path, e);
-	default:
-		return ply_write(s, offset, path, e);
-	}
+	return format == ANYSPLATS_SPZ ? spz_write(s, offset, spz_version, path, e)
+				       : formats[format].write(s, offset, path, e);
 }
 
 /* What a format of splats does not keep. A place is rounded to a step: of .splat single precision, of .spz a
@@ -92,24 +96,7 @@ int anysplats_write(const struct splats *s, const double offset[3], enum anyspla
 static const double STEP_MOST = 0.5, RESIZED_MOST = 0.01;
 static const double SPZ_SMALLEST = 4.5e-5, SPZ_LARGEST = 380; /* exp(-10), exp(255 / 16 - 10) */
 
-static double log_of(double x)
-{
-	return copysign(log1p(fabs(x)), x);
-}
-
-/* The step of SOG where the logarithm does not change it. */
-static void find_steps(double step[3], const struct splats *s, const double offset[3])
-{
-	for (size_t k = 0; k < 3; k++) {
-		double low = INFINITY, high = -INFINITY;
-		for (size_t i = 0; i < s->n; i++) {
-			low = fmin(low, (double)s->means[3 * i + k] + offset[k]);
-			high = fmax(high, (double)s->means[3 * i + k] + offset[k]);
-		}
-		step[k] = (log_of(high) - log_of(low)) / 65535;
-	}
-}
-
+/* sog: SOG's step where the logarithm does not change it. */
 static double step_at(enum anysplats_format format, double spz, double sog, double x)
 {
 	const float at = (float)fabs(x);
@@ -136,13 +123,15 @@ int anysplats_loss(const struct splats *s, const double offset[3], enum anysplat
 {
 	SCOPED struct quantile_item *shares = mem_alloc(s->n, sizeof *shares, "splats", e),
 				    *sizes = mem_alloc(s->n, sizeof *sizes, "splats", e);
-	double spz = 0, sog[3] = {0};
+	double spz = 0, low[3], high[3], sog[3] = {0};
 	size_t resized = 0;
 	int found = shares && sizes ? 0 : -1;
 
 	if (!found && s->n) {
 		spz = ldexp(1, -spz_fraction(s, offset));
-		find_steps(sog, s, offset);
+		sog_bounds(low, high, s, offset);
+		for (int k = 0; k < 3; k++)
+			sog[k] = (high[k] - low[k]) / 65535;
 	}
 	for (size_t i = 0; i < s->n && !found; i++) {
 		const float *scale = s->scales + 3 * i;

@@ -6,8 +6,16 @@
 #include "splat/gaussian_rows.h"
 #include "splat/splats.h"
 
+/* What reads each format: a file that is in memory, whose map it may take over. *s and *report are zeroed
+ * before; after a failure both may have something. `name` is for messages. */
+typedef int anysplats_reader(struct splats *s, double offset[3], struct rows_report *report, const char *name,
+	struct file_map *map, struct err *e);
+
 /* Reads a .ply, .spz, SOG, .glb or .splat ("-" is stdin): by how the file begins; .splat, which begins with a
- * Gaussian, and SOG's meta.json by their names. As ply_read_map. */
+ * Gaussian, and SOG's meta.json by their names. Activations are applied (scales exp, opacity sigmoid), means
+ * are minus `offset`, which is chosen here by the rule in ply.md (0 for scenes near the origin) and returned.
+ * Quaternions keep their length unless it is extreme (ply.md). `report` may be NULL. Returns 0, or -1 with *e
+ * set, *s zeroed and report->dropped NULL. */
 int anysplats_read(
 	struct splats *s, double offset[3], struct rows_report *report, const char *path, struct err *e);
 

@@ -227,12 +227,9 @@ int glb_read_map(struct splats *s, double offset[3], struct rows_report *report,
 {
 	struct source in = {0};
 
-	gaussian_rows_none(s, report);
-	int bad = glb_open(&in.file, name, map, e);
-	if (!bad) {
-		bad = read_all(&in, s, offset, report, e);
-		glb_close(&in.file);
-	}
-	file_unmap(map);
-	return bad ? -1 : 0;
+	if (glb_open(&in.file, name, map, e))
+		return -1;
+	const int bad = read_all(&in, s, offset, report, e);
+	glb_close(&in.file);
+	return bad;
 }

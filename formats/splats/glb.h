@@ -52,7 +52,7 @@ int glb_find_place(struct glb_place *place, const struct glb *f, int mesh, struc
 /* Whether a file begins as one. */
 int glb_is(const struct file_map *map);
 
-/* Reads a file that is in memory, which is released in any case; as ply_read_map. */
+/* An anysplats_reader. */
 int glb_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e);
 

@@ -273,29 +273,15 @@ static int read_elements(struct splats *s, double offset[3], struct rows_report 
 	return -(bad || plyfile_end(f, e));
 }
 
-int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
-	struct file_map *map, struct err *e)
-{
-	return ply_read_like(s, offset, report, name, map, NULL, e);
-}
-
 int ply_read_like(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, const struct ply_like *like, struct err *e)
 {
-	struct rows_report local = {0};
 	struct plyfile f;
 
-	gaussian_rows_none(s, report);
 	if (plyfile_open(&f, name, map, e))
 		return -1;
-	int bad = read_elements(s, offset, &local, &f, like, e);
+	const int bad = read_elements(s, offset, report, &f, like, e);
 	plyfile_close(&f);
-	if (bad)
-		splats_free(s);
-	if (bad || !report)
-		free(local.dropped);
-	else
-		*report = local;
 	return bad;
 }
 

@@ -8,22 +8,15 @@
 
 #include <stdint.h>
 
-/* Reads a 3DGS .ply that is in memory, which is released in any case (binary of either byte order, or ascii;
- * or PlayCanvas's packed form): activations applied (scales exp, opacity sigmoid), means minus `offset`,
- * which is chosen here by the rule in ply.md (0 for scenes near the origin) and returned. Quaternions keep
- * their length unless it is extreme (ply.md). `name` is for messages, `report` may be NULL. Returns 0, or -1
- * with *e set, *s zeroed and report->dropped NULL. */
-int ply_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
-	struct file_map *map, struct err *e);
-
 /* The same Gaussians from another file, in memory, and as read. */
 struct ply_like {
 	struct file_map map;
 	const struct splats *splats; /* NULL: there is none */
 };
 
-/* As ply_read_map, and the same to the byte, but quicker where the file is like the other up to its rows, and
- * rows differ in their means and rotations. like may be NULL. */
+/* An anysplats_reader (binary of either byte order, or ascii; or PlayCanvas's packed form). The same to the
+ * byte, but quicker where the file is like the other up to its rows, and rows differ in their means and
+ * rotations. like may be NULL. */
 int ply_read_like(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, const struct ply_like *like, struct err *e);
 

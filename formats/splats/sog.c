@@ -251,7 +251,6 @@ int sog_read_map(struct splats *s, double offset[3], struct rows_report *report,
 {
 	struct sog f = {0};
 
-	gaussian_rows_none(s, report);
 	return archive_open_zip(&f.files, name, map, e) ? -1 : read_all(&f, s, offset, report, e);
 }
 
@@ -261,7 +260,6 @@ int sog_read_meta(
 	struct sog f = {0};
 	SCOPED char *folder = file_dir(meta, e);
 
-	gaussian_rows_none(s, report);
 	if (!folder)
 		return -1;
 	archive_open_folder(&f.files, folder);

@@ -1,4 +1,5 @@
 /* Writing .sog: numbers as pixels of lossless WebP images, in a plain zip (formats/splats/sog.md). */
+#include "base/compare.h"
 #include "base/mem.h"
 #include "formats/arrays/archive.h"
 #include "formats/images/webp.h"
@@ -24,20 +25,20 @@ struct writing {
 	struct zip_write zip;
 };
 
-static double log_of(const struct writing *w, size_t i, int k)
+static double log_of(const struct splats *s, const double offset[3], size_t i, int k)
 {
-	const double x = (double)w->s->means[3 * i + (size_t)k] + w->offset[k];
+	const double x = (double)s->means[3 * i + (size_t)k] + offset[k];
 
 	return copysign(log1p(fabs(x)), x);
 }
 
-static void find_bounds(struct writing *w)
+void sog_bounds(double low[3], double high[3], const struct splats *s, const double offset[3])
 {
-	for (size_t i = 0; i < w->s->n; i++)
+	for (size_t i = 0; i < s->n; i++)
 		for (int k = 0; k < 3; k++) {
-			const double v = log_of(w, i, k);
-			w->low[k] = i ? fmin(w->low[k], v) : v;
-			w->high[k] = i ? fmax(w->high[k], v) : v;
+			const double v = log_of(s, offset, i, k);
+			low[k] = i ? fmin(low[k], v) : v;
+			high[k] = i ? fmax(high[k], v) : v;
 		}
 }
 
@@ -45,7 +46,7 @@ static unsigned mean_code(const struct writing *w, size_t i, int k)
 {
 	const double length = w->high[k] - w->low[k];
 
-	return length > 0 ? (unsigned)lrint(65535 * (log_of(w, i, k) - w->low[k]) / length) : 0;
+	return length > 0 ? (unsigned)lrint(65535 * (log_of(w->s, w->offset, i, k) - w->low[k]) / length) : 0;
 }
 
 struct place {
@@ -57,9 +58,7 @@ static int by_code(const void *a, const void *b)
 {
 	const struct place *x = a, *y = b;
 
-	if (x->code != y->code)
-		return x->code < y->code ? -1 : 1;
-	return x->i < y->i ? -1 : 1;
+	return x->code != y->code ? COMPARE(x->code, y->code) : COMPARE(x->i, y->i);
 }
 
 /* Gaussians along a curve that fills space (Morton's), so that neighbours in the image are alike. */
@@ -290,7 +289,7 @@ static int write_meta(struct writing *w, struct err *e)
 
 static int write_all(struct writing *w, struct err *e)
 {
-	find_bounds(w);
+	sog_bounds(w->low, w->high, w->s, w->offset);
 	return -(find_order(w, e) || make_codebooks(w, e) ||
 		 write_image(w, "means_l.webp", put_mean_low, e) ||
 		 write_image(w, "means_u.webp", put_mean_high, e) ||

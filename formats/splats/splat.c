@@ -46,30 +46,21 @@ int splat_read_map(struct splats *s, double offset[3], struct rows_report *repor
 	struct file_map *map, struct err *e)
 {
 	const struct gaussian_rows rows = {name, map->len / SPLAT_BYTES, 0, next_row, map, NULL};
-	struct rows_report local = {0};
 	size_t text = 0;
-	int bad = map->len % SPLAT_BYTES != 0;
 
-	*s = (struct splats){0};
 	while (text < map->len && text < SPLAT_BYTES &&
 		(isprint(map->data[text]) || isspace(map->data[text])))
 		text++;
-	if (bad)
-		err_file(e, name, "%zu bytes are not a whole number of Gaussians of %d", map->len,
+	if (map->len % SPLAT_BYTES)
+		return err_file(e, name, "%zu bytes are not a whole number of Gaussians of %d", map->len,
 			SPLAT_BYTES);
-	else
-		bad = gaussian_rows_read(s, offset, &local, &rows, e);
-	if (!bad && (text == SPLAT_BYTES || 2 * local.not_finite > local.read)) {
-		bad = err_file(e, name, "not a .splat: %zu of %zu Gaussians are not finite%s",
-			local.not_finite, local.read, text == SPLAT_BYTES ? ", and it begins as text" : "");
-		splats_free(s);
-	}
-	if (bad || !report)
-		free(local.dropped);
-	else
-		*report = local;
-	file_unmap(map);
-	return bad ? -1 : 0;
+	if (gaussian_rows_read(s, offset, report, &rows, e))
+		return -1;
+	return text < SPLAT_BYTES && 2 * report->not_finite <= report->read
+		       ? 0
+		       : err_file(e, name, "not a .splat: %zu of %zu Gaussians are not finite%s",
+				 report->not_finite, report->read,
+				 text == SPLAT_BYTES ? ", and it begins as text" : "");
 }
 
 void splat_pack(unsigned char bytes[SPLAT_BYTES], const struct splats *s, size_t i)

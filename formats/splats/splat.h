@@ -11,7 +11,7 @@ enum { SPLAT_BYTES = 32 };
 /* One Gaussian as the file has it. */
 void splat_pack(unsigned char bytes[SPLAT_BYTES], const struct splats *s, size_t i);
 
-/* Reads a file that is in memory, which is released in any case; as ply_read_map. */
+/* An anysplats_reader. */
 int splat_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e);
 

@@ -92,10 +92,7 @@ int spz_read_map(struct splats *s, double offset[3], struct rows_report *report,
 {
 	SCOPED_BY(spz_close) struct spz f = {0};
 
-	gaussian_rows_none(s, report);
-	int bad = spz_open(&f, name, map, e);
-	file_unmap(map);
-	if (bad)
+	if (spz_open(&f, name, map, e))
 		return -1;
 	const int rest = 3 * ((f.degree + 1) * (f.degree + 1) - 1);
 	const struct gaussian_rows rows = {f.name, f.n, rest, next_row, &f, NULL};

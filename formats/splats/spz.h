@@ -38,7 +38,7 @@ void spz_close(struct spz *f);
 /* Whether a file begins as one. */
 int spz_is(const struct file_map *map);
 
-/* Reads a file that is in memory, which is released in any case; as ply_read_map. */
+/* An anysplats_reader. */
 int spz_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e);
 

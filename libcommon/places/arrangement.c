@@ -1,6 +1,7 @@
 #include "places/arrangement.h"
 
 #include "places/object_span.h"
+#include "base/compare.h"
 #include "base/mem.h"
 #include "geom/up.h"
 #include "geom/vector.h"
@@ -48,18 +49,11 @@ int arrangement_where(const struct arrangement *a, size_t object, double at[3])
 	return weight > 0;
 }
 
-static int by_weight(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 /* No Gaussian counts more than most_weight times the middle one: a stray that is large has much weight. */
 static void level_weights(double *weight, double *sorted, size_t n)
 {
 	memcpy(sorted, weight, n * sizeof *weight);
-	qsort(sorted, n, sizeof *sorted, by_weight);
+	qsort(sorted, n, sizeof *sorted, compare_double);
 	for (size_t i = 0; i < n; i++)
 		weight[i] = fmin(weight[i], most_weight * sorted[n / 2]);
 }

@@ -1,5 +1,6 @@
 #include "places/track.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "base/quantile.h"
 #include "geom/rotation.h"
@@ -22,13 +23,6 @@ void tracks_free(struct tracks *to)
 	*to = (struct tracks){0};
 }
 
-static int by_value(const void *a, const void *b)
-{
-	const double x = *(const double *)a, y = *(const double *)b;
-
-	return (x > y) - (x < y);
-}
-
 static int take_points(
 	struct track *k, const struct extent *x, const struct splats *s, const char *is_moved, struct err *e)
 {
@@ -47,7 +41,7 @@ static int take_points(
 		k->weight[k->points] = sorted[k->points] = extent_part(s, g) * x->weight[i];
 		k->is_moved |= !is_moved || is_moved[g];
 	}
-	qsort(sorted, n, sizeof *sorted, by_value);
+	qsort(sorted, n, sizeof *sorted, compare_double);
 	for (size_t i = 0; i < n; i++)
 		sum += k->weight[i] = fmin(k->weight[i], most_weight * sorted[n / 2]);
 	for (size_t i = 0; i < n; i++)

@@ -1,5 +1,6 @@
 #include "score/score.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 #include "mask/mask_index.h"
 
@@ -191,7 +192,7 @@ static int order_pairs(const void *a, const void *b)
 	const struct score_pair *p = a, *q = b;
 	int order = strcmp(p->object, q->object);
 
-	return order ? order : (p->place > q->place) - (p->place < q->place);
+	return order ? order : COMPARE(p->place, q->place);
 }
 
 void score_sort(struct score_pair *pairs, size_t n)
@@ -240,7 +241,7 @@ static int order_joined(const void *a, const void *b)
 	const struct score_pair *p = a, *q = b;
 
 	if (p->truth_index != q->truth_index)
-		return p->truth_index < q->truth_index ? -1 : 1;
+		return COMPARE(p->truth_index, q->truth_index);
 	if (p->ref && q->ref)
 		return strcmp(p->ref, q->ref);
 	return (p->ref != NULL) - (q->ref != NULL);
@@ -250,7 +251,7 @@ static int order_places(const void *a, const void *b)
 {
 	const struct score_pair *p = a, *q = b;
 
-	return (p->place > q->place) - (p->place < q->place);
+	return COMPARE(p->place, q->place);
 }
 
 /* The pairs of one truth on one side. */

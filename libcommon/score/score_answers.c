@@ -1,7 +1,7 @@
 #include "score/score_answers.h"
 
-#include "base/compare.h"
 #include "base/mem.h"
+#include "base/names.h"
 #include "mask/mask_index.h"
 
 #include <math.h>
@@ -22,15 +22,15 @@ struct seen {
 
 struct truth {
 	size_t view_count, n;
-	struct view *views; /* by name */
-	struct seen *items; /* by view and object */
-	const char **names; /* of every object, also where it is not seen; by name */
-	size_t name_count;
+	struct view *views;   /* by name */
+	struct seen *items;   /* by view and object */
+	struct names objects; /* of the masks, also where they are not seen */
 };
 
 static void truth_free(struct truth *t)
 {
-	mem_free_all(t->views, t->items, t->names);
+	names_free(&t->objects);
+	mem_free_all(t->views, t->items);
 }
 
 /* Of several masks of one object in a view the one without ref, else the first. */
@@ -44,7 +44,6 @@ static void list_objects(struct truth *t, const struct mask *truth, const struct
 				chosen = x->keys[next].at;
 		if (key->is_ref)
 			continue;
-		t->names[t->name_count++] = key->name;
 		if (!t->view_count || strcmp(t->views[t->view_count - 1].name, key->view))
 			t->views[t->view_count++] = (struct view){key->view, t->n, t->n, NULL};
 		const struct mask_place *place = truth[chosen].place;
@@ -54,8 +53,6 @@ static void list_objects(struct truth *t, const struct mask *truth, const struct
 			t->items[t->n++] = (struct seen){key->name, &truth[chosen].rle};
 		t->views[t->view_count - 1].end = t->n;
 	}
-	if (t->name_count)
-		qsort(t->names, t->name_count, sizeof *t->names, compare_string);
 }
 
 static int truth_make(struct truth *t, const struct mask *truth, size_t n, struct err *e)
@@ -63,9 +60,9 @@ static int truth_make(struct truth *t, const struct mask *truth, size_t n, struc
 	SCOPED_BY(mask_index_free) struct mask_index x = {0};
 
 	*t = (struct truth){.views = mem_alloc(n, sizeof *t->views, "views", e),
-		.items = mem_alloc(n, sizeof *t->items, "masks", e),
-		.names = mem_alloc(n, sizeof *t->names, "objects", e)};
-	if (!t->views || !t->items || !t->names || mask_index_make(&x, truth, n, MASK_BY_OBJECT, e))
+		.items = mem_alloc(n, sizeof *t->items, "masks", e)};
+	if (!t->views || !t->items || mask_index_make(&x, truth, n, MASK_BY_OBJECT, e) ||
+		names_make(&t->objects, truth, sizeof *truth, offsetof(struct mask, object), n, e))
 		return -1;
 	list_objects(t, truth, &x);
 	return 0;
@@ -222,11 +219,8 @@ static void count_unknown(
 {
 	for (size_t i = 0; i < n; i++) {
 		int is_unknown = 0;
-		for (size_t k = 0; k < sentences[i].object_count; k++) {
-			const char *name = sentences[i].objects[k];
-			is_unknown |= !t->name_count ||
-				      !bsearch(&name, t->names, t->name_count, sizeof name, compare_string);
-		}
+		for (size_t k = 0; k < sentences[i].object_count; k++)
+			is_unknown |= names_find(&t->objects, sentences[i].objects[k]) == NAMES_NONE;
 		a->unknown += (size_t)is_unknown;
 	}
 }
@@ -234,17 +228,12 @@ static void count_unknown(
 static int count_unmatched(struct answers *a, const struct answer_sentence *sentences, size_t n,
 	const struct mask *predictions, size_t prediction_n, struct err *e)
 {
-	SCOPED const char **refs = mem_alloc(n, sizeof *refs, "sentences", e);
+	SCOPED_BY(names_free) struct names refs = {0};
 
-	if (!refs)
+	if (names_make(&refs, sentences, sizeof *sentences, offsetof(struct answer_sentence, ref), n, e))
 		return -1;
-	for (size_t i = 0; i < n; i++)
-		refs[i] = sentences[i].ref;
-	if (n)
-		qsort(refs, n, sizeof *refs, compare_string);
 	for (size_t i = 0; i < prediction_n; i++)
-		a->unmatched += !predictions[i].ref ||
-				!bsearch(&predictions[i].ref, refs, n, sizeof *refs, compare_string);
+		a->unmatched += !predictions[i].ref || names_find(&refs, predictions[i].ref) == NAMES_NONE;
 	return 0;
 }
 

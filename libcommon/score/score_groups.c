@@ -1,6 +1,7 @@
 #include "score/score_groups.h"
 
 #include "base/mem.h"
+#include "base/names.h"
 #include "mask/mask_index.h"
 
 const char *const score_seen_name[SCORE_SEEN] = {"<0.15", "0.15-0.5", "0.5-0.85", ">=0.85", "(unknown)"};
@@ -13,43 +14,22 @@ void score_saying_names(const char *names[SCORE_SAYINGS])
 	names[SCORE_SAYS_UNKNOWN] = "(unknown)";
 }
 
-/* A sentence's ref and its set. */
-struct saying {
-	const char *ref;
-	uint32_t set;
-};
-
-static int order_sayings(const void *a, const void *b)
-{
-	const struct saying *p = a, *q = b;
-
-	return strcmp(p->ref, q->ref);
-}
-
 int score_sayings(uint32_t *sets, const struct score_pair *pairs, size_t pair_n,
 	const struct score_sentence *sentences, size_t n, size_t *unknown, struct err *e)
 {
-	SCOPED struct saying *list = mem_alloc(n, sizeof *list, "sentences", e);
+	SCOPED_BY(names_free) struct names refs = {0};
 
 	*unknown = 0;
-	if (!list)
+	if (names_make(&refs, sentences, sizeof *sentences, offsetof(struct score_sentence, ref), n, e))
 		return -1;
-	for (size_t i = 0; i < n; i++) {
-		const uint32_t set = sentences[i].relations;
-		list[i] = (struct saying){sentences[i].ref, set ? set : (uint32_t)1 << SCORE_SAYS_NONE};
-	}
-	qsort(list, n, sizeof *list, order_sayings);
 	for (size_t i = 0; i < pair_n; i++) {
 		const struct score_pair *p = &pairs[i];
-		const struct saying key = {p->ref ? p->ref : p->truth->ref, 0};
-		const struct saying *found = NULL;
-		sets[i] = 0;
-		if (p->is_empty)
-			continue;
-		if (key.ref)
-			found = bsearch(&key, list, n, sizeof *list, order_sayings);
-		sets[i] = found ? found->set : (uint32_t)1 << SCORE_SAYS_UNKNOWN;
-		*unknown += !found;
+		const char *ref = p->ref ? p->ref : p->truth->ref;
+		const size_t at = ref ? names_find(&refs, ref) : NAMES_NONE;
+		const uint32_t set =
+			at == NAMES_NONE ? (uint32_t)1 << SCORE_SAYS_UNKNOWN : sentences[at].relations;
+		sets[i] = p->is_empty ? 0 : set ? set : (uint32_t)1 << SCORE_SAYS_NONE;
+		*unknown += !p->is_empty && at == NAMES_NONE;
 	}
 	return 0;
 }

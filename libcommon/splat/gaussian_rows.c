@@ -126,13 +126,6 @@ int gaussian_offset(double offset[3], const double *means, size_t n, struct err 
 	return 0;
 }
 
-void gaussian_rows_none(struct splats *s, struct rows_report *report)
-{
-	*s = (struct splats){0};
-	if (report)
-		*report = (struct rows_report){0};
-}
-
 static int note_dropped(
 	struct rows_report *report, size_t *capacity, size_t row, enum verdict why, struct err *e)
 {
@@ -196,17 +189,10 @@ static int read_and_shift(struct splats *s, double offset[3], struct rows_report
 int gaussian_rows_read(struct splats *s, double offset[3], struct rows_report *report,
 	const struct gaussian_rows *from, struct err *e)
 {
-	struct rows_report local = {0};
-
-	if (report)
-		*report = local;
-	int bad = read_and_shift(s, offset, &local, from, e);
+	*report = (struct rows_report){0};
+	const int bad = read_and_shift(s, offset, report, from, e);
 	if (bad)
 		splats_free(s);
-	if (bad || !report)
-		free(local.dropped);
-	else
-		*report = local;
 	return bad;
 }
 

@@ -37,10 +37,8 @@ struct gaussian_rows {
 	const struct splats *like; /* of n Gaussians; NULL: next returns 0 or -1 */
 };
 
-/* No Gaussians, and nothing to report (may be NULL). */
-void gaussian_rows_none(struct splats *s, struct rows_report *report);
-
-/* Reads all rows. `report` may be NULL. Returns 0, or -1 with *e set, *s zeroed and report->dropped NULL. */
+/* Reads all rows. Returns 0, or -1 with *e set and *s zeroed. The report is complete, its list the caller's
+ * after either. */
 int gaussian_rows_read(struct splats *s, double offset[3], struct rows_report *report,
 	const struct gaussian_rows *from, struct err *e);
 

@@ -1,4 +1,5 @@
 /* .glb written and read back: the same numbers, near the origin and far away; files that are cut off. */
+#include "read_as.h"
 #include "unit.h"
 
 #include "base/rng.h"
@@ -28,7 +29,7 @@ static int read_back(struct splats *s, double offset[3], struct err *e)
 {
 	struct file_map map;
 
-	return file_map(path, &map, e) || glb_read_map(s, offset, NULL, "f", &map, e) ? -1 : 0;
+	return file_map(path, &map, e) || read_as(glb_read_map, s, offset, &map, e) ? -1 : 0;
 }
 
 /* The largest difference, as a part of the larger number where that is above 1. */
@@ -101,7 +102,7 @@ static void test_damage(struct rng *r)
 		memcpy(copy, bytes, cut);
 		struct file_map map = {(unsigned char *)copy, cut, 0};
 		e = (struct err){0};
-		CHECK(glb_read_map(&t, offset, NULL, "f", &map, &e) && e.code == ERR_FORMAT, "cut at %zu: %s",
+		CHECK(read_as(glb_read_map, &t, offset, &map, &e) && e.code == ERR_FORMAT, "cut at %zu: %s",
 			cut, e.message);
 	}
 	for (size_t at = 0; at < n; at++) {
@@ -110,7 +111,7 @@ static void test_damage(struct rng *r)
 		copy[at] ^= 1 + (char)(at % 7);
 		struct file_map map = {(unsigned char *)copy, n, 0};
 		e = (struct err){0};
-		if (!glb_read_map(&t, offset, NULL, "f", &map, &e))
+		if (!read_as(glb_read_map, &t, offset, &map, &e))
 			splats_free(&t);
 		else
 			CHECK(e.code == ERR_FORMAT, "byte %zu: %s", at, e.message);

@@ -1,5 +1,6 @@
 /* SOG: tests/golden/sog, which splat-transform 2.7.1 made of the eight Gaussians of eight.ply, from its
  * folder and as a zip; zips that are cut off or changed. */
+#include "read_as.h"
 #include "unit.h"
 
 #include "base/file.h"
@@ -103,12 +104,12 @@ static void test_golden(const struct splats *a)
 	double offset[3];
 	struct file_map map;
 
-	if (CHECK(!sog_read_meta(&b, offset, NULL, FOLDER "meta.json", &e), "%s", e.message))
+	if (CHECK(!anysplats_read(&b, offset, NULL, FOLDER "meta.json", &e), "%s", e.message))
 		check_same(a, &b);
 	splats_free(&b);
 	for (int method = 0; method <= Z_DEFLATED; method += Z_DEFLATED) {
 		make_zip(method, NULL);
-		if (CHECK(!file_map(path, &map, &e) && !sog_read_map(&b, offset, NULL, "f", &map, &e), "%s",
+		if (CHECK(!file_map(path, &map, &e) && !read_as(sog_read_map, &b, offset, &map, &e), "%s",
 			    e.message))
 			check_same(a, &b);
 		splats_free(&b);
@@ -128,7 +129,7 @@ static void test_missing(void)
 		make_zip(0, names[i]);
 		snprintf(expected, sizeof expected,
 			"f: no file '%s' in the zip: unzip it if it is a packed file", names[i]);
-		CHECK(!file_map(path, &map, &e) && sog_read_map(&b, offset, NULL, "f", &map, &e) &&
+		CHECK(!file_map(path, &map, &e) && read_as(sog_read_map, &b, offset, &map, &e) &&
 				e.code == ERR_FORMAT && !strcmp(e.message, expected),
 			"%s", e.message);
 	}
@@ -154,12 +155,12 @@ static void test_damage(int method)
 		memcpy((void *)(size_t)cut.data, bytes, at);
 		memcpy((void *)(size_t)changed.data, bytes, len);
 		*(unsigned char *)(size_t)(changed.data + at) ^= (unsigned char)(1 + rng_below(&r, 255));
-		if (!sog_read_map(&b, offset, NULL, "f", &cut, &e)) {
+		if (!read_as(sog_read_map, &b, offset, &cut, &e)) {
 			/* minizip does without the last bytes, which say how long the comment is. */
 			read += at + 3 < len;
 			splats_free(&b);
 		}
-		if (sog_read_map(&b, offset, NULL, "f", &changed, &e))
+		if (read_as(sog_read_map, &b, offset, &changed, &e))
 			refused++;
 		splats_free(&b);
 	}

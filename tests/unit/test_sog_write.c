@@ -1,5 +1,6 @@
 /* .sog written and read back within the bounds of formats/splats/sog.md; its codebooks and palettes beside
  * naive ones. */
+#include "read_as.h"
 #include "unit.h"
 
 #include "base/rng.h"
@@ -176,7 +177,7 @@ static void test_round_trip(size_t n, int coefficients, struct rng *r)
 		return;
 	fill(&s, r);
 	if (!CHECK(!sog_write(&s, origin, path, &e) && !file_map(path, &map, &e) &&
-			    !sog_read_map(&t, offset, NULL, "f", &map, &e),
+			    !read_as(sog_read_map, &t, offset, &map, &e),
 		    "%zu, %d: %s", n, coefficients, e.message))
 		return;
 	CHECK(t.n == n && t.sh_coefficients == (n ? coefficients : 1), "%zu, %d", t.n, t.sh_coefficients);
@@ -205,7 +206,7 @@ static void test_harmonics(void)
 	for (size_t i = 0; i < 120; i++)
 		s.means[i] = (float)(i / 3) / 10;
 	if (CHECK(!sog_write(&s, origin, path, &e) && !file_map(path, &map, &e) &&
-			    !sog_read_map(&t, offset, NULL, "f", &map, &e),
+			    !read_as(sog_read_map, &t, offset, &map, &e),
 		    "%s", e.message)) {
 		for (size_t i = 0; i < 40; i++) {
 			const size_t from = (size_t)lrint(10 * (double)t.means[3 * i]);

@@ -1,4 +1,5 @@
 /* The bytes of a .splat: formats/splats/splat.md. */
+#include "read_as.h"
 #include "unit.h"
 
 #include "formats/splats/splat.h"
@@ -34,8 +35,8 @@ static void test_read(unsigned char *bytes, size_t len)
 
 	memcpy((void *)(size_t)map.data, bytes, len);
 	memcpy((void *)(size_t)cut.data, bytes, len - 1);
-	if (!CHECK(!splat_read_map(&s, offset, NULL, "f", &map, &e) && s.n == N && s.sh_coefficients == 1,
-		    "%s", e.message))
+	if (!CHECK(!read_as(splat_read_map, &s, offset, &map, &e) && s.n == N && s.sh_coefficients == 1, "%s",
+		    e.message))
 		return;
 	CHECK(s.means[0] == 1 && s.means[1] == 2 && s.means[2] == 3, "%g %g %g", s.means[0], s.means[1],
 		s.means[2]);
@@ -45,7 +46,7 @@ static void test_read(unsigned char *bytes, size_t len)
 	CHECK(fabsf(s.quats[8] - 0.5f) < 1e-6f && fabsf(s.opacities[1] - 0.5f) < 1 / 509.0f, "%g",
 		s.quats[8]);
 	splats_free(&s);
-	CHECK(splat_read_map(&s, offset, NULL, "f", &cut, &e) && e.code == ERR_FORMAT &&
+	CHECK(read_as(splat_read_map, &s, offset, &cut, &e) && e.code == ERR_FORMAT &&
 			!strcmp(e.message, "f: 95 bytes are not a whole number of Gaussians of 32"),
 		"%s", e.message);
 }

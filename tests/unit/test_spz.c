@@ -1,5 +1,6 @@
 /* .spz written and read back in each version, within the bounds of formats/splats/spz.md; files that are cut
  * off. */
+#include "read_as.h"
 #include "unit.h"
 
 #include "base/rng.h"
@@ -43,7 +44,7 @@ static int read_back(struct splats *s, double offset[3], struct err *e)
 {
 	struct file_map map;
 
-	return file_map(path, &map, e) || spz_read_map(s, offset, NULL, "f", &map, e) ? -1 : 0;
+	return file_map(path, &map, e) || read_as(spz_read_map, s, offset, &map, e) ? -1 : 0;
 }
 
 static double worst(const float *a, const float *b, size_t n, int is_log)
@@ -139,7 +140,7 @@ static void test_cuts(int version)
 		struct file_map map = {part, cut, 0};
 		memcpy(part, bytes, cut);
 		e.message[0] = 0;
-		if (!spz_read_map(&b, zero, NULL, "f", &map, &e) || e.code != ERR_FORMAT || !*e.message)
+		if (!read_as(spz_read_map, &b, zero, &map, &e) || e.code != ERR_FORMAT || !*e.message)
 			kept++;
 	}
 	CHECK(!kept, "version %d: %d cuts are read", version, kept);
@@ -162,7 +163,7 @@ static void test_changes(int version)
 		struct file_map map = {changed, len, 0};
 		memcpy(changed, bytes, len);
 		changed[at] ^= (unsigned char)(1 + rng_below(&r, 255));
-		if (spz_read_map(&b, zero, NULL, "f", &map, &e))
+		if (read_as(spz_read_map, &b, zero, &map, &e))
 			refused++;
 		else
 			splats_free(&b);
