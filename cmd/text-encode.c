@@ -50,7 +50,7 @@ static int run(const struct cli *c, const struct report *to, struct err *e)
 {
 	SCOPED_BY(encoding_free) struct encoding x = {0};
 	SCOPED_BY(encoder_free) struct encoder with = {0};
-	SCOPED char *usual = options.model ? NULL : encoder_default(e);
+	SCOPED char *usual = options.model ? NULL : cached_model("encoder", e);
 
 	if (!options.model && !(options.model = usual))
 		return -1;

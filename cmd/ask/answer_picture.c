@@ -56,14 +56,8 @@ static int best_view(
 	const struct answer_calls calls = {worth, look, NULL};
 	size_t best = 0;
 
-	for (size_t v = 0; v < c->n && small; v++) {
-		const struct camera *from = &c->views[v];
-		const int longer = from->width > from->height ? from->width : from->height;
-		int width, height;
-		camera_scaled_size(
-			from, longer > LOOK_SIDE ? (double)LOOK_SIDE / longer : 1, &width, &height);
-		small[v] = camera_resize(from, width, height);
-	}
+	for (size_t v = 0; v < c->n && small; v++)
+		small[v] = camera_within(&c->views[v], LOOK_SIDE);
 	if (!worth || !small || answer_all(q, small, c->n, &calls, e))
 		return -1;
 	for (size_t v = 1; v < c->n; v++)

@@ -62,7 +62,7 @@ int run_folder_find(struct run_folder *f, const char *run, const struct run_fold
 	if (check_there(run, e) || !(f->scene = find_part(run, given->scene, "scene", "--scene", e)) ||
 		find_models(f, run, given->model, may_be_nameless, e))
 		return -1;
-	f->encoder = given->encoder ? mem_strdup(given->encoder, e) : encoder_default(e);
+	f->encoder = given->encoder ? mem_strdup(given->encoder, e) : cached_model("encoder", e);
 	return f->encoder ? 0 : -1;
 }
 

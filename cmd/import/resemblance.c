@@ -46,11 +46,8 @@ static double correlate(const float *a, const float *b, size_t n)
 static int compare(const struct scene *s, const struct camera *full, const uint8_t *rgb, int height,
 	int width, double *correlation, struct err *e)
 {
-	const int longer = full->width > full->height ? full->width : full->height;
-	int w, h;
-
-	camera_scaled_size(full, longer > SIDE ? (double)SIDE / longer : 1, &w, &h);
-	const struct camera small = camera_resize(full, w, h);
+	const struct camera small = camera_within(full, SIDE);
+	const int w = small.width, h = small.height;
 	const size_t pixels = (size_t)w * (size_t)h;
 	SCOPED float *room = mem_alloc(pixels, 6 * sizeof *room, "pictures", e);
 	SCOPED uint8_t *shown = room ? shrink_picture(rgb, height, width, h, w, e) : NULL;

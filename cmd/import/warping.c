@@ -13,10 +13,7 @@
 int warping_open(struct warping *w, enum warp way, const char *scene, struct err *e)
 {
 	*w = (struct warping){.way = way};
-	if (way == WARP_NONE)
-		return 0;
-	SCOPED char *path = file_join(scene, "cameras.json", "", e);
-	return path ? scene_read_cameras_file(&w->cameras, path, e) : -1;
+	return way == WARP_NONE ? 0 : scene_read_cameras(&w->cameras, scene, e);
 }
 
 void warping_free(struct warping *w)

@@ -56,13 +56,6 @@ static int check_sizes(const struct exporting *x, struct err *e)
 	return 0;
 }
 
-static int read_cameras(struct exporting *x, const char *scene, struct err *e)
-{
-	SCOPED char *path = file_join(scene, "cameras.json", "", e);
-
-	return !path || scene_read_cameras_file(&x->cameras, path, e) ? -1 : 0;
-}
-
 static int distort_masks(struct exporting *x, const char *scene, struct err *e)
 {
 	SCOPED_BY(warping_free) struct warping w = {0};
@@ -80,7 +73,8 @@ int exporting_read(struct exporting *x, const char *masks, const char *scene, in
 {
 	x->path = file_name(masks);
 	SCOPED long *lines = NULL;
-	if (masks_read_lines(&x->masks, &lines, masks, e) || (scene && read_cameras(x, scene, e)) ||
+	if (masks_read_lines(&x->masks, &lines, masks, e) ||
+		(scene && scene_read_cameras(&x->cameras, scene, e)) ||
 		(distort ? distort_masks(x, scene, e)
 			 : masks_views(&x->masks, lines, masks, &x->cameras, NULL, NULL, e)))
 		return -1;

@@ -2,6 +2,7 @@
 
 #include "base/file.h"
 #include "base/mem.h"
+#include "formats/records/json.h"
 #include "formats/records/jsonl.h"
 #include "formats/arrays/safetensors.h"
 
@@ -77,7 +78,7 @@ static int put_lines(
 	while ((got = jsonl_next(&j, &line, e)) > 0) {
 		jsontext_open(to, NULL, '[');
 		for (const char *const *key = keys; *key; key++) {
-			const cJSON *value = cJSON_GetObjectItemCaseSensitive(line, *key);
+			const cJSON *value = json_get(line, *key);
 			jsontext_number(to, NULL, cJSON_IsNumber(value) ? value->valuedouble : NAN);
 		}
 		jsontext_close(to, ']');
@@ -89,14 +90,14 @@ static int put_lines(
 
 int report_losses(struct jsontext *to, const char *run, struct err *e)
 {
-	static const char *const stages[] = {"stage1", "stage2"}, *const own[] = {"iteration", "bce",
-									  "contrast", "loss", NULL};
+	static const char *const stages[] = {"stage1", "stage2"},
+				 *const logs[] = {"stage1/train.log", "stage2/train.log"},
+				 *const own[] = {"iteration", "bce", "contrast", "loss", NULL};
 
 	jsontext_open(to, "losses", '[');
 	for (size_t k = 0; k < 2; k++) {
-		SCOPED char *dir = file_join(run, stages[k], "", e),
-			    *path = dir ? file_join(dir, "train.log", "", e) : NULL;
-		if (!path || !file_exists(path))
+		SCOPED char *path = file_find(run, logs[k], e);
+		if (!path)
 			continue;
 		jsontext_open(to, NULL, '{');
 		jsontext_string(to, "stage", stages[k]);
@@ -130,8 +131,8 @@ int report_settings(struct jsontext *to, const char *run, struct err *e)
 
 	jsontext_open(to, "settings", '[');
 	for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
-		SCOPED char *path = file_join(run, files[k], "", e);
-		if (!path || !file_exists(path))
+		SCOPED char *path = file_find(run, files[k], e);
+		if (!path)
 			continue;
 		jsontext_open(to, NULL, '{');
 		jsontext_string(to, "file", files[k]);

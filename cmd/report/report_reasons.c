@@ -115,17 +115,11 @@ enum { MOST_VIEWS = 6 };
 static int keep_mask(void *data, const struct mask *m, const struct mask *parts, size_t n, struct err *e)
 {
 	struct report_set *s = data;
-	struct mask own = {.score = m->score, .visible = NAN};
+	struct mask own;
 
 	(void)parts, (void)n;
-	own.view = mem_strdup(m->view, e);
-	own.ref = mem_strdup(m->ref, e);
-	own.object = m->object ? mem_strdup(m->object, e) : NULL;
-	if (!own.view || !own.ref || (m->object && !own.object) ||
-		rle_from_runs(&own.rle, m->rle.runs, m->rle.n, m->rle.height, m->rle.width, e)) {
-		mask_free(&own);
+	if (mask_copy(&own, m, m->ref, m->object, e))
 		return -1;
-	}
 	s->masks.n++;
 	return masks_add(&s->masks.set, &own, e);
 }

@@ -22,12 +22,7 @@ static const struct {
 /* The path of a part of the folder; NULL where it is not there, or memory is out: then *e is set. */
 static char *part(const struct report_run *r, const char *name, struct err *e)
 {
-	char *path = file_join(r->options->run, name, "", e);
-
-	if (!path || file_exists(path))
-		return path;
-	free(path);
-	return NULL;
+	return file_find(r->options->run, name, e);
 }
 
 static int read_scene(struct report_run *r, struct err *e)
@@ -145,14 +140,6 @@ static int worth(const struct report_run *r, const char *view)
 	return best;
 }
 
-static struct camera picture_of(const struct camera *from, long long most)
-{
-	int width, height;
-
-	camera_scaled_size(from, from->width > most ? (double)most / from->width : 1, &width, &height);
-	return camera_resize(from, width, height);
-}
-
 /* Views with truth come before others; of those that are alike, some that are spread evenly. */
 static int choose_views(struct report_run *r, struct err *e)
 {
@@ -172,7 +159,8 @@ static int choose_views(struct report_run *r, struct err *e)
 		if (!w || taken[w] >= take[w] || at[w]++ != taken[w] * of[w] / take[w])
 			continue;
 		taken[w]++;
-		r->shown[r->shown_count++] = picture_of(&c->views[v], r->options->width);
+		const double scale = (double)r->options->width / c->views[v].width;
+		r->shown[r->shown_count++] = camera_scaled(&c->views[v], scale < 1 ? scale : 1);
 	}
 	return 0;
 }

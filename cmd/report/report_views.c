@@ -12,33 +12,21 @@
 
 enum { QUALITY = 78 };
 
-struct picture_rgb {
-	int height, width;
-	uint8_t *rgb;
-};
-
-static int encode_jpeg(
-	const struct picture_rgb *p, const char *name, uint8_t **bytes, size_t *n, struct err *e)
-{
-	return jpeg_encode(name, p->rgb, p->height, p->width, QUALITY, bytes, n, e);
-}
-
 int report_photograph(const char *folder, const struct camera *c, uint8_t **bytes, size_t *n,
 	const struct report *to, struct err *e)
 {
 	SCOPED char *path = c->image ? file_join(folder, c->image, "", e) : NULL;
-	struct picture_rgb whole = {0}, p = {c->height, c->width, NULL};
+	SCOPED uint8_t *whole = NULL;
+	int height, width;
 
 	if (!path || !file_exists(path))
 		return 0;
-	if (warping_read_photograph(c, folder, 0, &whole.rgb, &whole.height, &whole.width, e)) {
+	if (warping_read_photograph(c, folder, 0, &whole, &height, &width, e)) {
 		report_warn(to, "%s; the view is rendered instead", e->message);
 		return 0;
 	}
-	p.rgb = shrink_picture(whole.rgb, whole.height, whole.width, c->height, c->width, e);
-	const int bad = !p.rgb || encode_jpeg(&p, c->name, bytes, n, e);
-	mem_free_all(whole.rgb, p.rgb);
-	return bad ? -1 : 1;
+	SCOPED uint8_t *rgb = shrink_picture(whole, height, width, c->height, c->width, e);
+	return !rgb || jpeg_encode(c->name, rgb, c->height, c->width, QUALITY, bytes, n, e) ? -1 : 1;
 }
 
 int report_rendering(const struct scene *s, const struct camera *c, uint8_t **bytes, size_t *n, struct err *e)
@@ -59,7 +47,7 @@ int report_rendering(const struct scene *s, const struct camera *c, uint8_t **by
 		return -1;
 	for (size_t i = 0; i < values; i++)
 		bits[i] = (uint8_t)lrintf(255 * rgb[i]);
-	return encode_jpeg(&(struct picture_rgb){c->height, c->width, bits}, c->name, bytes, n, e);
+	return jpeg_encode(c->name, bits, c->height, c->width, QUALITY, bytes, n, e);
 }
 
 static int put_view(struct jsontext *to, const struct report_run *r, const struct camera *c,

@@ -1,16 +1,12 @@
 #define _XOPEN_SOURCE 700 /* realpath; NOLINT(bugprone-reserved-identifier) */
 #include "cmd/report/reporting.h"
 
+#include "base/embed.h"
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/path.h"
 
-/* The page, with a byte of 0 after it: the assembler puts it in. */
-__asm__(".section .rodata\n"
-	".globl report_page_begin\nreport_page_begin:\n"
-	".incbin \"cmd/report/report_page.html\"\n"
-	".byte 0\n"
-	".previous\n");
+EMBED(report_page, "cmd/report/report_page.html");
 extern const char report_page_begin[];
 
 /* Where the data and the viewer stand in the page. */

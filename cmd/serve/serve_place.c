@@ -169,7 +169,7 @@ int serving_preview(struct serving *s, const struct serving_label *l, struct ser
 	cJSON_ArrayForEach(name, l->views)
 	{
 		for (size_t v = 0; v < s->cameras.n && !bad; v++)
-			if (cJSON_IsString(name) && !strcmp(name->valuestring, s->cameras.views[v].name))
+			if (json_is(name, s->cameras.views[v].name))
 				bad = put_preview(s, l, &json, v, e);
 	}
 	jsontext_close(&json, ']');

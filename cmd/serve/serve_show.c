@@ -124,14 +124,10 @@ static int render_picture(struct serving *s, void *data, struct err *e)
 int serving_picture(struct serving *s, const cJSON *body, struct serving_reply *to, struct err *e)
 {
 	size_t view;
-	int width, height;
 
 	if (serving_view(s, body, "name", &view, e))
 		return -1;
-	const struct camera *c = &s->cameras.views[view];
-	const int side = c->width > c->height ? c->width : c->height;
-	camera_scaled_size(c, side > PICTURE_SIDE ? (double)PICTURE_SIDE / side : 1, &width, &height);
-	struct wanted_view w = {camera_resize(c, width, height), to};
+	struct wanted_view w = {camera_within(&s->cameras.views[view], PICTURE_SIDE), to};
 	const int found =
 		report_photograph(s->scene_path, &w.camera, (uint8_t **)&to->bytes, &to->length, s->to, e);
 	to->type = "image/jpeg";

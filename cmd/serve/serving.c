@@ -98,8 +98,7 @@ int serving_open(
 		s->viewer = NULL;
 	}
 	s->scene_path = mem_strdup(s->asking->files.scene, e);
-	SCOPED char *cameras = file_join(s->asking->files.scene, "cameras.json", "", e);
-	return !s->scene_path || !cameras || scene_read_cameras_file(&s->cameras, cameras, e) ||
+	return !s->scene_path || scene_read_cameras(&s->cameras, s->scene_path, e) ||
 			       serving_labels_open(s, e) || start(s, e)
 		       ? -1
 		       : serving_labels_refresh(s, e);

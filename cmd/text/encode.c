@@ -9,8 +9,8 @@
 /* Tokens in one forward pass: enough to keep the products busy, little memory. */
 enum { ROWS_AT_ONCE = 1024 };
 
-/* sentences from words. ERR_FORMAT, with the ref, where one is not finite. */
-static int take_means(struct text *t, struct err *e)
+/* sentences from words. */
+static void take_means(struct text *t)
 {
 	const size_t width = (size_t)t->width;
 
@@ -21,12 +21,8 @@ static int take_means(struct text *t, struct err *e)
 			for (size_t w = first; w < end; w++)
 				sum += t->words[w * width + i];
 			t->sentences[r * width + i] = (float)(sum / (double)(end - first));
-			if (!isfinite(t->sentences[r * width + i]))
-				return err_set(e, ERR_FORMAT, "ref '%s': the encoder's output is not finite",
-					t->refs[r]);
 		}
 	}
-	return 0;
 }
 
 /* Sets (*list)[i], in a list that the first such entry makes. */
@@ -63,16 +59,6 @@ static int take_more(struct text *t, const struct sentences *s, struct err *e)
 	return bad ? -1 : 0;
 }
 
-static int add_token(struct encoding_tokens *t, int32_t id, struct err *e)
-{
-	struct wordpieces *p = &t->pieces;
-
-	if (mem_grow((void **)&p->ids, &p->capacity, p->n + 1, sizeof *p->ids, "word pieces", e))
-		return -1;
-	p->ids[p->n++] = id;
-	return 0;
-}
-
 static int tokenise(const struct report *to, struct encoding_tokens *t, const struct sentences *s,
 	const struct encoder *with, struct err *e)
 {
@@ -83,7 +69,7 @@ static int tokenise(const struct report *to, struct encoding_tokens *t, const st
 		return -1;
 	for (size_t i = 0; i < s->n; i++) {
 		t->starts[i] = t->pieces.n;
-		if (add_token(t, encoder_first(with), e) ||
+		if (wordpieces_push(&t->pieces, encoder_first(with), e) ||
 			encoder_cut(with, s->items[i].text, &t->pieces, e))
 			return -1;
 		size_t words = t->pieces.n - t->starts[i] - 1;
@@ -92,7 +78,7 @@ static int tokenise(const struct report *to, struct encoding_tokens *t, const st
 				s->items[i].ref, words, positions - 2);
 			t->pieces.n = t->starts[i] + positions - 1;
 		}
-		if (add_token(t, encoder_last(with), e))
+		if (wordpieces_push(&t->pieces, encoder_last(with), e))
 			return -1;
 	}
 	t->starts[s->n] = t->pieces.n;
@@ -224,7 +210,7 @@ static int make_words(struct text *out, const struct encoder *with, const struct
 	int bad = 0;
 
 	find_sizes(t, out->n, &most, &longest);
-	if (encoder_scratch(with, most, longest, &floats))
+	if (text_tower_scratch(&with->tower, most, longest, &floats))
 		return err_set(e, ERR_SYSTEM, "encoder: its scratch does not fit in memory");
 	scratch = mem_alloc(floats, sizeof *scratch, "encoder's scratch", e);
 	vectors = mem_alloc(most, sizeof *vectors * width, "encoder's output", e);
@@ -243,7 +229,11 @@ static int make_words(struct text *out, const struct encoder *with, const struct
 		report_step(to, (double)end, NULL);
 	}
 	report_end(to);
-	return bad || (encoder_pools(with) ? check_finite(out, e) : take_means(out, e)) ? -1 : 0;
+	if (bad)
+		return -1;
+	if (!encoder_pools(with))
+		take_means(out);
+	return check_finite(out, e);
 }
 
 static int has_sentence(const struct sentences *s, const char *ref)

@@ -35,10 +35,6 @@ struct encoder {
 	struct fingerprint fingerprint; /* of all of it */
 };
 
-/* Where `make encoder` puts an encoder: refersplat/encoder in $XDG_CACHE_HOME or ~/.cache. free() it; NULL
- * with *e set, also where there is none. */
-char *encoder_default(struct err *e);
-
 /* Reads the encoder in the folder `dir`; *x is zeroed before. Returns 0, or -1 with *e set; encoder_free
  * after either. */
 int encoder_read(struct encoder *x, const char *dir, int is_static, struct err *e);
@@ -65,9 +61,8 @@ char *encoder_print(const struct encoder *x, const int32_t *ids, size_t n, struc
  * does. */
 int encoder_has_middle(const struct encoder *x);
 
-/* As text_tower_scratch and text_tower_forward, or what the vocabulary has where x->is_static. middle is NULL
- * where it is not wanted, or where there is none. */
-int encoder_scratch(const struct encoder *x, size_t rows, size_t longest, size_t *floats);
+/* As text_tower_forward, or what the vocabulary has where x->is_static. middle is NULL where it is not
+ * wanted, or where there is none. */
 void encoder_forward(const struct encoder *x, const int32_t *ids, const size_t *starts, size_t n, float *out,
 	float *middle, float *scratch);
 

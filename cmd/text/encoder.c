@@ -31,11 +31,6 @@ char *cached_model(const char *what, struct err *e)
 	return NULL;
 }
 
-char *encoder_default(struct err *e)
-{
-	return cached_model("encoder", e);
-}
-
 /* Ids index the embedding, so none may lie past it. */
 static int check_vocab(const struct vocab *v, int words, const char *dir, struct err *e)
 {
@@ -116,11 +111,6 @@ char *encoder_print(const struct encoder *x, const int32_t *ids, size_t n, struc
 int encoder_has_middle(const struct encoder *x)
 {
 	return !x->is_clip && !x->is_static;
-}
-
-int encoder_scratch(const struct encoder *x, size_t rows, size_t longest, size_t *floats)
-{
-	return text_tower_scratch(&x->tower, rows, longest, floats);
 }
 
 void encoder_forward(const struct encoder *x, const int32_t *ids, const size_t *starts, size_t n, float *out,

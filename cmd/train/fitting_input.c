@@ -45,20 +45,24 @@ static int read_cameras(struct fitting_input *f, struct err *e)
 	return 0;
 }
 
-/* A photograph may have another size than its camera, but not another shape. */
+/* A picture may have another size than its camera, but not another shape. */
+static int check_shape(const struct camera *c, const char *path, int height, int width, struct err *e)
+{
+	if (fabs((double)c->width * height / width - c->height) <= 1 + 0.005 * c->height)
+		return 0;
+	return err_set(e, ERR_FORMAT, "%s: %dx%d, which is not the shape of its camera, %dx%d", path, width,
+		height, c->width, c->height);
+}
+
 static int read_photograph(
 	struct fitting_input *f, const struct camera *c, struct photograph *p, struct err *e)
 {
 	SCOPED uint8_t *rgb = NULL;
 	int height, width;
 
-	if (warping_read_photograph(c, ".", 0, &rgb, &height, &width, e))
-		return -1;
-	int bad = fabs((double)c->width * height / width - c->height) > 1 + 0.005 * c->height
-			  ? err_set(e, ERR_FORMAT, "%s: %dx%d, which is not the shape of its camera, %dx%d",
-				    c->image, width, height, c->width, c->height)
-			  : photograph_make(p, c, f->options->scale, rgb, height, width, e);
-	return bad ? -1 : 0;
+	return -(warping_read_photograph(c, ".", 0, &rgb, &height, &width, e) ||
+		 check_shape(c, c->image, height, width, e) ||
+		 photograph_make(p, c, f->options->scale, rgb, height, width, e));
 }
 
 /* The pixels of a view that do not count, where there is a mask of it. */
@@ -66,19 +70,15 @@ static int read_ignored(
 	const struct fitting_input *f, const struct camera *c, struct photograph *p, struct err *e)
 {
 	SCOPED uint8_t *mask = NULL;
-	int height, width, bad = 0;
-	SCOPED char *path = f->options->ignore ? file_join(f->options->ignore, c->name, ".png", e) : NULL;
+	int height, width;
 
-	if (f->options->ignore && !path)
-		return -1;
-	if (path && file_exists(path))
-		bad = png_read_mask(path, &mask, &height, &width, e);
-	if (!bad && mask && fabs((double)c->width * height / width - c->height) > 1 + 0.005 * c->height)
-		bad = err_set(e, ERR_FORMAT, "%s: %dx%d, which is not the shape of its camera, %dx%d", path,
-			width, height, c->width, c->height);
-	else if (!bad && mask)
-		bad = photograph_ignore(p, mask, height, width, e);
-	return bad ? -1 : 0;
+	if (!f->options->ignore)
+		return 0;
+	SCOPED char *path = file_join(f->options->ignore, c->name, ".png", e);
+	if (!path || !file_exists(path))
+		return path ? 0 : -1;
+	return -(png_read_mask(path, &mask, &height, &width, e) || check_shape(c, path, height, width, e) ||
+		 photograph_ignore(p, mask, height, width, e));
 }
 
 /* part (cameras.n): what each photograph is for; PARTS: there is none. */

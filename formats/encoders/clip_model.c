@@ -10,21 +10,11 @@
 #define OPEN_CLIP "open_clip_config.json"
 static const char *const names[] = {"hidden_size", "num_attention_heads", "max_position_embeddings"};
 
-static const cJSON *member(const cJSON *object, const char *key)
-{
-	return json_get(object, key);
-}
-
-static int is_text(const cJSON *item, const char *text)
-{
-	return cJSON_IsString(item) && !strcmp(item->valuestring, text);
-}
-
 static int is_of_clip(const cJSON *config)
 {
-	const cJSON *type = member(config, "model_type");
+	const cJSON *type = json_get(config, "model_type");
 
-	return is_text(type, "clip") || is_text(type, "clip_text_model");
+	return json_is(type, "clip") || json_is(type, "clip_text_model");
 }
 
 /* Whether a file is a configuration of a CLIP as HuggingFace writes it. */
@@ -82,12 +72,13 @@ static int read_activation(struct text_tower *c, const cJSON *config, const char
 static int read_keys(
 	struct text_tower *c, struct kind *kind, const cJSON *config, const char *path, struct err *e)
 {
-	const cJSON *nested = member(config, "text_config"), *text = cJSON_IsObject(nested) ? nested : config;
-	const cJSON *own = member(config, "projection_dim");
+	const cJSON *nested = json_get(config, "text_config"),
+		    *text = cJSON_IsObject(nested) ? nested : config;
+	const cJSON *own = json_get(config, "projection_dim");
 	struct transformer *t = &c->body;
 
-	kind->is_projected = is_text(member(config, "model_type"), "clip") ||
-			     is_text(cJSON_GetArrayItem(member(config, "architectures"), 0),
+	kind->is_projected = json_is(json_get(config, "model_type"), "clip") ||
+			     json_is(cJSON_GetArrayItem(json_get(config, "architectures"), 0),
 				     "CLIPTextModelWithProjection");
 	return -(pretrained_int(text, "vocab_size", 10000000, 49408, &c->words, path, e) ||
 		 pretrained_int(text, names[0], 65536, 512, &t->width, path, e) ||
@@ -107,15 +98,15 @@ static int read_open_keys(
 	static const char *const own[] = {"width", "heads", "context_length"};
 	static const char *const refused[] = {"hf_model_name", "hf_tokenizer_name", "embed_cls",
 		"no_causal_mask", "pool_type", "mlp_ratio", "act_kwargs", "norm_kwargs"};
-	const cJSON *model = cJSON_IsObject(member(config, "model_cfg")) ? member(config, "model_cfg")
-									 : config,
-		    *text = member(model, "text_cfg");
+	const cJSON *model = cJSON_IsObject(json_get(config, "model_cfg")) ? json_get(config, "model_cfg")
+									   : config,
+		    *text = json_get(model, "text_cfg");
 	struct transformer *t = &c->body;
 
 	if (!cJSON_IsObject(text))
 		return err_file(e, path, "key 'text_cfg' is not an object");
 	for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
-		if (member(text, refused[i]))
+		if (json_get(text, refused[i]))
 			return err_file(
 				e, path, "key '%s': text towers of this kind are not read", refused[i]);
 	if (pretrained_int(model, "embed_dim", 65536, 0, &kind->width, path, e) ||
@@ -127,7 +118,8 @@ static int read_open_keys(
 		return -1;
 	t->inner = 4 * t->width;
 	t->eps = 1e-5;
-	t->activation = cJSON_IsTrue(member(model, "quick_gelu")) ? TRANSFORMER_QUICK_GELU : TRANSFORMER_GELU;
+	t->activation =
+		cJSON_IsTrue(json_get(model, "quick_gelu")) ? TRANSFORMER_QUICK_GELU : TRANSFORMER_GELU;
 	kind->is_projected = 1;
 	return pretrained_sizes(t, c->positions, own, path, e);
 }

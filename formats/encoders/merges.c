@@ -172,17 +172,12 @@ static int read_two(struct bpe *b, const char *vocabulary, const char *merges, s
 
 static int is_lowercase(const cJSON *normalizer)
 {
-	const cJSON *type = json_get(normalizer, "type"), *all = json_get(normalizer, "normalizers"), *one;
+	const cJSON *one;
+	int is = json_is(json_get(normalizer, "type"), "Lowercase");
 
-	if (cJSON_IsString(type) && !strcmp(type->valuestring, "Lowercase"))
-		return 1;
-	cJSON_ArrayForEach(one, all)
-	{
-		type = json_get(one, "type");
-		if (cJSON_IsString(type) && !strcmp(type->valuestring, "Lowercase"))
-			return 1;
-	}
-	return 0;
+	cJSON_ArrayForEach(one, json_get(normalizer, "normalizers")) is |=
+		json_is(json_get(one, "type"), "Lowercase");
+	return is;
 }
 
 /* A member of the model that must be this string; `may_miss`: or absent, or null. */
@@ -191,8 +186,7 @@ static int need_string(const cJSON *model, const char *key, const char *wanted, 
 {
 	const cJSON *item = json_get(model, key);
 
-	if ((may_miss && (!item || cJSON_IsNull(item))) ||
-		(cJSON_IsString(item) && !strcmp(item->valuestring, wanted)))
+	if ((may_miss && (!item || cJSON_IsNull(item))) || json_is(item, wanted))
 		return 0;
 	return err_file(e, path, "model: '%s' is not \"%s\": only CLIP's tokenizers are read", key, wanted);
 }

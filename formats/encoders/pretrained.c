@@ -25,7 +25,7 @@ int pretrained_is(const cJSON *config, const char *key, const char *wanted, cons
 {
 	const cJSON *item = json_get(config, key);
 
-	if (!item || (cJSON_IsString(item) && !strcmp(item->valuestring, wanted)))
+	if (!item || json_is(item, wanted))
 		return 0;
 	return err_file(e, path, "key '%s' is not \"%s\"", key, wanted);
 }

@@ -8,16 +8,14 @@
 #include <math.h>
 #include <stdio.h>
 
-/* A member that, if it is there at all, must be this boolean. */
-static int need_flag(
-	const cJSON *object, const char *key, int wanted, const char *path, const char *where, struct err *e)
+/* A member that, if it is there at all, must be true. */
+static int need_flag(const cJSON *object, const char *key, const char *path, const char *where, struct err *e)
 {
 	const cJSON *item = json_get(object, key);
 
-	if (!item || cJSON_IsNull(item) || (wanted ? cJSON_IsTrue(item) : cJSON_IsFalse(item)))
+	if (!item || cJSON_IsNull(item) || cJSON_IsTrue(item))
 		return 0;
-	return err_file(e, path, "%s: '%s' is not %s: only uncased BERT tokenizers are read", where, key,
-		wanted ? "true" : "false");
+	return err_file(e, path, "%s: '%s' is not true: only uncased BERT tokenizers are read", where, key);
 }
 
 /* A member that must be this string; `may_miss` allows it to be absent. */
@@ -26,7 +24,7 @@ static int need_string(const cJSON *object, const char *key, const char *wanted,
 {
 	const cJSON *item = json_get(object, key);
 
-	if ((may_miss && !item) || (cJSON_IsString(item) && !strcmp(item->valuestring, wanted)))
+	if ((may_miss && !item) || json_is(item, wanted))
 		return 0;
 	return err_file(
 		e, path, "%s: '%s' is not \"%s\": only uncased BERT tokenizers are read", where, key, wanted);
@@ -40,10 +38,10 @@ static int check_kind(const cJSON *root, const char *path, struct err *e)
 	const cJSON *longest = json_get(model, "max_input_chars_per_word");
 
 	if (need_string(normalizer, "type", "BertNormalizer", 0, path, "normalizer", e) ||
-		need_flag(normalizer, "clean_text", 1, path, "normalizer", e) ||
-		need_flag(normalizer, "handle_chinese_chars", 1, path, "normalizer", e) ||
-		need_flag(normalizer, "strip_accents", 1, path, "normalizer", e) ||
-		need_flag(normalizer, "lowercase", 1, path, "normalizer", e) ||
+		need_flag(normalizer, "clean_text", path, "normalizer", e) ||
+		need_flag(normalizer, "handle_chinese_chars", path, "normalizer", e) ||
+		need_flag(normalizer, "strip_accents", path, "normalizer", e) ||
+		need_flag(normalizer, "lowercase", path, "normalizer", e) ||
 		need_string(splitter, "type", "BertPreTokenizer", 0, path, "pre_tokenizer", e) ||
 		need_string(model, "type", "WordPiece", 1, path, "model", e) ||
 		need_string(model, "unk_token", "[UNK]", 1, path, "model", e) ||
@@ -118,9 +116,9 @@ static int check_config(const char *dir, struct err *e)
 	if (!path || !file_exists(path))
 		return path ? 0 : -1;
 	SCOPED_BY(json_release) cJSON *root = json_read(path, e);
-	return -(!root || need_flag(root, "do_lower_case", 1, path, "tokenizer", e) ||
-		 need_flag(root, "strip_accents", 1, path, "tokenizer", e) ||
-		 need_flag(root, "tokenize_chinese_chars", 1, path, "tokenizer", e));
+	return -(!root || need_flag(root, "do_lower_case", path, "tokenizer", e) ||
+		 need_flag(root, "strip_accents", path, "tokenizer", e) ||
+		 need_flag(root, "tokenize_chinese_chars", path, "tokenizer", e));
 }
 
 int vocab_read(struct vocab *v, const char *dir, struct err *e)

@@ -4,6 +4,7 @@
 #include "base/err.h"
 
 #include <cjson/cJSON.h>
+#include <string.h>
 
 /* The value in a file ("-" is stdin): cJSON_Delete it. NULL with *e set ("path: not JSON at offset N"). */
 cJSON *json_read(const char *path, struct err *e);
@@ -44,6 +45,12 @@ static inline cJSON *json_member(const cJSON *object, const char *key)
 	cJSON *item = json_get(object, key);
 
 	return cJSON_IsNull(item) ? NULL : item;
+}
+
+/* 1 where the value is that text. */
+static inline int json_is(const cJSON *value, const char *text)
+{
+	return cJSON_IsString(value) && !strcmp(value->valuestring, text);
 }
 
 /* A number member, finite. Returns 1 and *value, 0 where it is absent or null (an error if `need`), -1 with

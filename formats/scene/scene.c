@@ -216,7 +216,7 @@ int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 	return bad;
 }
 
-static int read_cameras(struct cameras *c, const char *dir, struct err *e)
+int scene_read_cameras(struct cameras *c, const char *dir, struct err *e)
 {
 	SCOPED char *path = file_join(dir, "cameras.json", "", e);
 	return path ? scene_read_cameras_file(c, path, e) : -1;
@@ -266,7 +266,7 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 
 	*s = (struct scene){0};
 	int bad = path ? scene_read_splats(s, path, e) : -1;
-	if (bad || !(s->path = mem_strdup(dir, e)) || read_cameras(&s->cameras, dir, e) ||
+	if (bad || !(s->path = mem_strdup(dir, e)) || scene_read_cameras(&s->cameras, dir, e) ||
 		read_motion(s, dir, path, e)) {
 		scene_free(s);
 		return -1;

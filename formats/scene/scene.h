@@ -27,6 +27,7 @@ void scene_free(struct scene *s);
 /* One of the files. scene_read_splats sets splats, fingerprint and offset of a zeroed *s. */
 int scene_read_splats(struct scene *s, const char *path, struct err *e);
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);
+int scene_read_cameras(struct cameras *c, const char *dir, struct err *e);
 
 /* to: the scene's splats at the time of a view; of a still scene as they are. What does not move is the
  * scene's own. ERR_FORMAT where the view has no time, or it is none of the scene's. */

@@ -233,11 +233,6 @@ void file_unmap(struct file_map *map)
 	*map = (struct file_map){0};
 }
 
-void file_out_remove_all(void)
-{
-	temporary_remove_all();
-}
-
 static mode_t new_mode(void)
 {
 	mode_t mask;
@@ -453,6 +448,16 @@ char *file_join(const char *dir, const char *name, const char *suffix, struct er
 	else
 		snprintf(path, bytes, "%s/%s%s", dir, name, suffix);
 	return path;
+}
+
+char *file_find(const char *dir, const char *name, struct err *e)
+{
+	char *path = file_join(dir, name, "", e);
+
+	if (!path || file_exists(path))
+		return path;
+	free(path);
+	return NULL;
 }
 
 char *file_dir(const char *path, struct err *e)

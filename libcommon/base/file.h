@@ -52,10 +52,6 @@ int file_out_end(struct file_out *out, int bad, struct err *e);
 /* Opens, writes by `put`, in which nothing but the device can fail, and ends. */
 int file_out_put(const char *path, void (*put)(FILE *out, const void *what), const void *what, struct err *e);
 
-/* Removes the temporary files of all outputs that are open: for a signal's handler, after which the process
- * ends. Threads that then open or end an output wait for that. */
-void file_out_remove_all(void);
-
 /* Fails where an output of that name could not be opened: before long work. Leaves nothing behind. */
 int file_out_probe(const char *path, struct err *e);
 
@@ -76,6 +72,9 @@ int file_is_pipe(const char *path);
 
 /* dir + "/" + name (+ suffix); name itself where it is absolute. NULL with *e set when memory is out. */
 char *file_join(const char *dir, const char *name, const char *suffix, struct err *e);
+
+/* The same of what is there, else NULL: *e is set where memory is out alone. */
+char *file_find(const char *dir, const char *name, struct err *e);
 
 /* The folder part of path, "." where there is none. */
 char *file_dir(const char *path, struct err *e);

@@ -2,6 +2,7 @@
 
 #include "base/err.h"
 #include "base/file.h"
+#include "base/temporary.h"
 
 #include <signal.h>
 #include <string.h>
@@ -12,7 +13,7 @@ static const char *tool_name;
 /* The signal's own action is in place again, and ends the process with the status that belongs to it. */
 static void end_by_signal(int number)
 {
-	file_out_remove_all();
+	temporary_remove_all();
 	raise(number);
 }
 
@@ -43,7 +44,7 @@ static void on_bus_error(int number, siginfo_t *info, void *context)
 	}
 	while (__atomic_exchange_n(&is_ending, 1, __ATOMIC_SEQ_CST))
 		pause();
-	file_out_remove_all();
+	temporary_remove_all();
 	say(tool_name);
 	say(": ");
 	say(name);

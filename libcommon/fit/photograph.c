@@ -12,10 +12,8 @@ int photograph_make(struct photograph *p, const struct camera *c, double scale, 
 	scale = fmin(scale, (double)width / c->width);
 	*p = (struct photograph){.scale = fmin(scale, 1)};
 	for (int k = 0; k < FIT_LEVELS; k++) {
-		int w, h;
-		camera_scaled_size(c, scale / (1 << k), &w, &h);
-		p->camera[k] = camera_resize(c, w, h);
-		p->rgb[k] = shrink_picture(rgb, height, width, h, w, e);
+		p->camera[k] = camera_scaled(c, scale / (1 << k));
+		p->rgb[k] = shrink_picture(rgb, height, width, p->camera[k].height, p->camera[k].width, e);
 		if (!p->rgb[k]) {
 			photograph_free(p);
 			return -1;

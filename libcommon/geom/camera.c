@@ -48,13 +48,17 @@ void camera_scaled_size(const struct camera *c, double s, int *width, int *heigh
 	*height = (int)fmax(1, round(c->height * s));
 }
 
-static struct camera reduce(const struct camera *c, int side)
+struct camera camera_scaled(const struct camera *c, double s)
 {
-	const int longer = c->width > c->height ? c->width : c->height;
 	int width, height;
 
-	camera_scaled_size(c, fmin(1, (double)side / longer), &width, &height);
+	camera_scaled_size(c, s, &width, &height);
 	return camera_resize(c, width, height);
+}
+
+struct camera camera_within(const struct camera *c, int side)
+{
+	return camera_scaled(c, fmin(1, (double)side / (c->width > c->height ? c->width : c->height)));
 }
 
 size_t cameras_spread(const struct cameras *c, size_t most, int side, struct camera *chosen)
@@ -71,7 +75,7 @@ size_t cameras_spread(const struct cameras *c, size_t most, int side, struct cam
 		if (!is_any && c->views[i].split != SPLIT_TRAIN)
 			continue;
 		if (at++ == n * all / take)
-			chosen[n++] = reduce(&c->views[i], side);
+			chosen[n++] = camera_within(&c->views[i], side);
 	}
 	return n;
 }

@@ -49,6 +49,10 @@ struct camera camera_resize(const struct camera *from, int width, int height);
 /* Size at scale s: round(W s) x round(H s), at least 1x1. */
 void camera_scaled_size(const struct camera *c, double s, int *width, int *height);
 
+/* The camera at scale s; reduced so that its longer side has at most `side` pixels. */
+struct camera camera_scaled(const struct camera *c, double s);
+struct camera camera_within(const struct camera *c, int side);
+
 /* At most `most` of the training views, spread evenly over them in their order, or of all views where none is
  * for training; reduced so that the longer side has at most `side` pixels. Returns how many. */
 size_t cameras_spread(const struct cameras *c, size_t most, int side, struct camera *chosen);

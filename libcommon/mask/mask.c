@@ -43,6 +43,22 @@ int mask_order(const struct mask *a, const struct mask *b)
 	return order || !p->n ? order : memcmp(p->runs, q->runs, p->n * sizeof *p->runs);
 }
 
+int mask_copy(struct mask *to, const struct mask *from, const char *ref, const char *object, struct err *e)
+{
+	const struct rle *r = &from->rle;
+
+	*to = (struct mask){.view = mem_strdup(from->view, e),
+		.ref = ref ? mem_strdup(ref, e) : NULL,
+		.object = object ? mem_strdup(object, e) : NULL,
+		.score = from->score,
+		.visible = NAN};
+	if (to->view && !ref == !to->ref && !object == !to->object &&
+		!rle_from_runs(&to->rle, r->runs, r->n, r->height, r->width, e))
+		return 0;
+	mask_free(to);
+	return -1;
+}
+
 void mask_free(struct mask *m)
 {
 	mem_free_all((char *)m->view, (char *)m->ref, (char *)m->object);

@@ -32,6 +32,10 @@ int mask_check_shape(
  * of that is the same. */
 int mask_order(const struct mask *a, const struct mask *b);
 
+/* A copy with its own strings and runs, of this ref and object (either may be NULL); its score alone comes
+ * along. Returns 0, or -1 with *e set and nothing to free. */
+int mask_copy(struct mask *to, const struct mask *from, const char *ref, const char *object, struct err *e);
+
 /* Of a mask that owns its strings, runs and place. */
 void mask_free(struct mask *m);
 

@@ -30,21 +30,6 @@ static int number_things(struct things *t, const struct mask *masks, size_t n, s
 	return 0;
 }
 
-static int add_copy(struct masks *to, const struct mask *from, const char *object, struct err *e)
-{
-	struct mask m = {.view = mem_strdup(from->view, e),
-		.object = mem_strdup(object, e),
-		.score = from->score,
-		.visible = NAN};
-
-	if (!m.view || !m.object ||
-		rle_from_runs(&m.rle, from->rle.runs, from->rle.n, from->rle.height, from->rle.width, e)) {
-		mask_free(&m);
-		return -1;
-	}
-	return masks_add(to, &m, e);
-}
-
 /* iou (things,objects): sums over views. */
 static int compare_all(double *iou, const struct things *things, const struct things *objects,
 	const struct mask *truth, size_t truth_n, const struct mask *predictions, size_t prediction_n,
@@ -75,11 +60,13 @@ static int take(struct masks *named, const struct mask *first, const struct thin
 
 	for (size_t i = 0; i < prediction_n; i++) {
 		size_t begin, end, of_ref, of_ref_end;
+		struct mask m;
 		if (objects->of[i] != object)
 			continue;
 		mask_index_object(truth, predictions[i].view, name, &begin, &end);
 		mask_index_ref(truth, predictions[i].view, name, &of_ref, &of_ref_end);
-		if ((begin < end || of_ref < of_ref_end) && add_copy(named, &predictions[i], name, e))
+		if ((begin < end || of_ref < of_ref_end) &&
+			(mask_copy(&m, &predictions[i], NULL, name, e) || masks_add(named, &m, e)))
 			return -1;
 	}
 	return 0;

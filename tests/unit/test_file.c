@@ -2,6 +2,7 @@
 #include "unit.h"
 
 #include "base/file.h"
+#include "base/temporary.h"
 #include "base/mem.h"
 #include "base/path.h"
 
@@ -163,7 +164,7 @@ static void remove_all(void)
 	}
 	if (entries() != 21)
 		_exit(2);
-	file_out_remove_all();
+	temporary_remove_all();
 }
 
 static void be_killed(void)
@@ -266,7 +267,7 @@ static void write_much(void)
 
 static void end_by_signal(int number)
 {
-	file_out_remove_all();
+	temporary_remove_all();
 	signal(number, SIG_DFL);
 	raise(number);
 }
