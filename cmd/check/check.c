@@ -75,7 +75,7 @@ static int check_objects(struct check *c, const char *path, struct err *e)
 	if ((got < 0 && !is_frames) || start_again(path, e))
 		return -1;
 	if (is_frames)
-		return check_cameras(c, path, "nerfstudio cameras", e);
+		return check_cameras(c, path, "nerfstudio cameras", camerafile_read, e);
 	if (is_box && !is_sentence && !is_mask)
 		return check_boxes(c, path, e);
 	if (is_detection && !is_sentence && !is_mask)
@@ -92,8 +92,8 @@ static int check_list(struct check *c, const char *path, struct err *e)
 
 	if (!list || start_again(path, e))
 		return -1;
-	return is_scene || is_empty ? check_scene_cameras(c, path, e)
-				    : check_cameras(c, path, "3DGS cameras", e);
+	return is_scene || is_empty ? check_cameras(c, path, "scene cameras", scene_read_cameras_file, e)
+				    : check_cameras(c, path, "3DGS cameras", camerafile_read, e);
 }
 
 /* How a file begins. */
@@ -181,10 +181,7 @@ int check_file(struct check *c, const char *path, struct err *e)
 	if (file_is_pipe(path))
 		return err_set(e, ERR_SYSTEM,
 			"%s: a pipe, which cannot be read twice: '-' reads one from standard input", path);
-	if (!(file_is_dir(path) ? check_folder(c, path, e) : check_stream(c, path, e)))
-		return 0;
-	check_free(c);
-	return -1;
+	return file_is_dir(path) ? check_folder(c, path, e) : check_stream(c, path, e);
 }
 
 void check_free(struct check *c)

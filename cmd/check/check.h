@@ -5,6 +5,7 @@
 #include "base/err.h"
 #include "formats/arrays/fingerprint.h"
 #include "formats/arrays/safetensors.h"
+#include "formats/cameras/camerafile.h"
 #include "formats/scene/scene.h"
 
 enum { CHECK_MAX_FACTS = 6 };
@@ -26,8 +27,8 @@ struct check {
 };
 
 /* Checks a file or folder; "-" is stdin, which must be seekable (see check_spool). Returns 0 and *c (release
- * with check_free), or -1 with *e: ERR_FORMAT where the file is malformed or of no known kind, ERR_SYSTEM
- * where it cannot be read. */
+ * with check_free after either), or -1 with *e: ERR_FORMAT where the file is malformed or of no known kind,
+ * ERR_SYSTEM where it cannot be read. */
 int check_file(struct check *c, const char *path, struct err *e);
 void check_free(struct check *c);
 
@@ -65,8 +66,8 @@ int check_anysplats(struct check *c, const char *path, const char *kind, struct 
 int check_npy(struct check *c, const char *path, struct err *e);
 int check_npz(struct check *c, const char *path, struct err *e);
 int check_image(struct check *c, const char *path, struct err *e);
-int check_scene_cameras(struct check *c, const char *path, struct err *e);
-int check_cameras(struct check *c, const char *path, const char *kind, struct err *e);
+typedef int cameras_reader(struct cameras *c, const char *path, struct err *e);
+int check_cameras(struct check *c, const char *path, const char *kind, cameras_reader *read, struct err *e);
 
 void check_add_motion(struct check *c, const struct motion *m);
 void check_add_splats(struct check *c, const struct splats *s);

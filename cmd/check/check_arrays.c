@@ -2,7 +2,6 @@
 
 #include "base/mem.h"
 #include "formats/splats/anysplats.h"
-#include "formats/cameras/camerafile.h"
 #include "formats/scene/features.h"
 #include "formats/scene/lifted.h"
 #include "formats/scene/model.h"
@@ -63,17 +62,6 @@ int check_motion(struct check *c, const char *path, struct err *e)
 	c->scene = m.scene;
 	check_add_motion(c, &m);
 	check_add(c, "gaussians of the scene", (long long)m.gaussians);
-	return 0;
-}
-
-int check_scene_cameras(struct check *c, const char *path, struct err *e)
-{
-	SCOPED_BY(cameras_free) struct cameras views = {0};
-
-	if (scene_read_cameras_file(&views, path, e))
-		return -1;
-	c->kind = "scene cameras";
-	check_add_views(c, &views);
 	return 0;
 }
 
@@ -257,11 +245,11 @@ int check_image(struct check *c, const char *path, struct err *e)
 	return 0;
 }
 
-int check_cameras(struct check *c, const char *path, const char *kind, struct err *e)
+int check_cameras(struct check *c, const char *path, const char *kind, cameras_reader *read, struct err *e)
 {
 	SCOPED_BY(cameras_free) struct cameras views = {0};
 
-	if (camerafile_read(&views, path, e))
+	if (read(&views, path, e))
 		return -1;
 	c->kind = kind;
 	check_add_views(c, &views);

@@ -194,7 +194,7 @@ int check_folder(struct check *c, const char *path, struct err *e)
 	if (found & 1)
 		return err_set(e, ERR_FORMAT, "%s: a scene without %s", path, parts[1]);
 	if (colmap_is_model(path))
-		return check_cameras(c, path, "COLMAP model", e);
+		return check_cameras(c, path, "COLMAP model", camerafile_read, e);
 	int n = scandir(path, &names, NULL, alphasort);
 	if (n < 0)
 		return err_errno(e, "%s", path);

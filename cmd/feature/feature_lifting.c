@@ -1,6 +1,5 @@
 #include "cmd/feature/feature_lifting.h"
 
-#include "base/file.h"
 #include "base/half.h"
 #include "base/mem.h"
 #include "formats/scene/weights.h"

@@ -156,9 +156,11 @@ static int check_level(const struct feature_query *q, size_t level, struct err *
 
 static int read_features(struct feature_query *q, struct err *e)
 {
-	for (; q->levels < q->options->levels; q->levels++)
-		if (features_open(&q->features[q->levels], q->options->features[q->levels], e))
+	while (q->levels < q->options->levels) {
+		const char *path = q->options->features[q->levels];
+		if (features_open(&q->features[q->levels++], path, e))
 			return -1;
+	}
 	for (size_t k = 0; k < q->levels; k++)
 		if (check_level(q, k, e))
 			return -1;

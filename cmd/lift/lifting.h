@@ -6,7 +6,6 @@
 #include "base/err.h"
 #include "base/names.h"
 #include "base/report.h"
-#include "formats/scene/lifted.h"
 #include "formats/records/masks.h"
 #include "formats/encoders/parser_weights.h"
 #include "formats/scene/proposed.h"

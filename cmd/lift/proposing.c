@@ -89,17 +89,11 @@ static int take_classes(struct proposing *p, const struct names *words, struct e
 
 static int32_t class_of(const struct proposing *p, const char *word)
 {
-	int32_t low = 0, high = (int32_t)p->class_count;
+	char **at = word && p->class_count
+			    ? bsearch(&word, p->classes, p->class_count, sizeof word, compare_string)
+			    : NULL;
 
-	while (word && low < high) {
-		const int32_t at = low + (high - low) / 2;
-		const int side = strcmp(word, p->classes[at]);
-		if (!side)
-			return at;
-		low = side > 0 ? at + 1 : low;
-		high = side > 0 ? high : at;
-	}
-	return -1;
+	return at ? (int32_t)(at - p->classes) : -1;
 }
 
 /* A detection of a view, in pixels of its weights. */

@@ -5,7 +5,6 @@
 #include "base/report.h"
 #include "formats/arrays/precision.h"
 #include "formats/scene/scene.h"
-#include "geom/camera.h"
 
 enum { WEIGHING_TRAIN, WEIGHING_TEST, WEIGHING_ALL };
 

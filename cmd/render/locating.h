@@ -8,7 +8,6 @@
 #include "cmd/render/request.h"
 #include "cmd/run/anymodel.h"
 #include "formats/scene/scene.h"
-#include "lift/extent.h"
 
 #include <stdint.h>
 #include <stdio.h>

@@ -3,7 +3,6 @@
 #pragma once
 
 #include "answer/responses.h"
-#include "ask/choose.h"
 #include "base/err.h"
 #include "cmd/run/anymodel.h"
 #include "formats/scene/scene.h"

@@ -5,12 +5,10 @@
 #include "base/jsontext.h"
 #include "base/report.h"
 #include "cmd/ask/asking.h"
-#include "cmd/ask/explain.h"
 #include "cmd/run/anymodel.h"
 #include "cmd/score/score_masks.h"
 #include "formats/scene/scene.h"
 #include "formats/scene/text.h"
-#include "mask/rle.h"
 #include "score/score.h"
 
 #include <stdint.h>

@@ -57,8 +57,6 @@ int answer_scores_make(struct answer_scores *s, const struct sentences *sentence
 			"%s: shows nothing that a sentence means: there is nothing to score",
 			file_name(truth->path));
 	bad = bad || list_kinds(s, e);
-	if (bad)
-		answer_scores_free(s);
 	return bad ? -1 : 0;
 }
 

@@ -78,8 +78,6 @@ int box_scores_read(struct box_scores *s, const char *truth, const char *predict
 
 	*s = (struct box_scores){0};
 	int bad = boxes_read(&s->truth, truth, e) || boxes_read(&p, predictions, e) || make(s, &p, truth, e);
-	if (bad)
-		box_scores_free(s);
 	return bad ? -1 : 0;
 }
 

@@ -39,8 +39,6 @@ int score_masks_read(struct score_masks *s, const char *path, struct err *e)
 		return -1;
 	s->n = s->set.n;
 	int bad = check_twice(s, e);
-	if (bad)
-		score_masks_free(s);
 	return bad;
 }
 

@@ -5,7 +5,6 @@
 #include "cmd/serve/serving.h"
 
 #include "base/embed.h"
-#include "base/file.h"
 #include "base/mem.h"
 #include "cmd/report/reporting.h"
 #include "formats/records/json.h"

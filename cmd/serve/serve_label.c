@@ -6,7 +6,6 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
-#include "base/threads.h"
 #include "cmd/lift/lifting.h"
 #include "cmd/text/encode.h"
 #include "formats/records/json.h"

@@ -283,6 +283,17 @@ static int fall_back(struct fitting *f, struct err *e)
 				 file_name(f->options->output), why, f->good_step);
 }
 
+int fitting_resumes(const char *checkpoint, int is_wanted, int is_replaced, const struct report *to)
+{
+	if (!checkpoint || !file_exists(checkpoint))
+		return 0;
+	if (!is_wanted && is_replaced)
+		report_warn(to,
+			"%s: is of an earlier training and will be replaced; --resume would go on from it",
+			checkpoint);
+	return is_wanted;
+}
+
 /* Goes on from a checkpoint where that is wanted. */
 static int resume(struct fitting *f, struct err *e)
 {
@@ -292,13 +303,7 @@ static int resume(struct fitting *f, struct err *e)
 		"--iterations %lld --minutes %g --gaussians %zu --degree %lld --seed %lld --exposure %s, inputs %08x",
 		o->iterations, o->minutes, f->fit.gaussians.capacity, o->degree, o->seed, o->exposure,
 		(unsigned)f->in.checksum);
-	if (!o->checkpoint_path || !file_exists(o->checkpoint_path))
-		return 0;
-	if (!o->is_resumed && o->checkpoint)
-		report_warn(f->to,
-			"%s: is of an earlier training and will be replaced; --resume would go on from it",
-			o->checkpoint_path);
-	if (!o->is_resumed)
+	if (!fitting_resumes(o->checkpoint_path, o->is_resumed, o->checkpoint > 0, f->to))
 		return 0;
 	if (checkpoint_read(&f->fit, o->checkpoint_path, f->identity, e))
 		return -1;

@@ -3,7 +3,6 @@
 
 #include "base/err.h"
 #include "base/report.h"
-#include "fit/fit.h"
 
 #include <stdint.h>
 
@@ -30,3 +29,7 @@ struct fitting_options {
 
 /* Trains and writes the scene. Returns 0, or -1 with *e set. */
 int fit_scene(const struct fitting_options *o, const struct report *to, struct err *e);
+
+/* Whether a training, of either kind, goes on from its checkpoint: where there is one and that is wanted.
+ * Warns of one that will be replaced. */
+int fitting_resumes(const char *checkpoint, int is_wanted, int is_replaced, const struct report *to);

@@ -1,3 +1,4 @@
+#include "cmd/train/fitting.h"
 #include "cmd/train/training.h"
 
 #include "base/mem.h"
@@ -51,13 +52,7 @@ static int resume(struct learning *l, const struct report *to, struct err *e)
 {
 	const struct learning_options *o = l->options;
 
-	if (!o->checkpoint_path || !file_exists(o->checkpoint_path))
-		return 0;
-	if (!o->is_resumed && o->checkpoint)
-		report_warn(to,
-			"%s: is of an earlier training and will be replaced; --resume would go on from it",
-			o->checkpoint_path);
-	if (!o->is_resumed)
+	if (!fitting_resumes(o->checkpoint_path, o->is_resumed, o->checkpoint > 0, to))
 		return 0;
 	if (checkpoint_resume(&l->trainer.state, o->checkpoint_path, &l->of, o->iterations, e))
 		return -1;

@@ -205,8 +205,6 @@ int training_read(struct training *t, const struct training_files *from, const s
 {
 	*t = (struct training){0};
 	int bad = read_all(t, from, o, to, e);
-	if (bad)
-		training_free(t);
 	return bad;
 }
 

@@ -3,6 +3,7 @@
 #include "base/compare.h"
 #include "base/little.h"
 #include "base/mem.h"
+#include "formats/records/json.h"
 
 #include <cjson/cJSON.h>
 #include <libdeflate.h>
@@ -29,9 +30,9 @@ const char *st_dtype_name(enum st_dtype t)
 static int read_entry(struct st_tensor *t, const cJSON *item, const char *path, const unsigned char *data,
 	size_t data_len, struct err *e)
 {
-	const cJSON *dtype = cJSON_GetObjectItemCaseSensitive(item, "dtype");
-	const cJSON *shape = cJSON_GetObjectItemCaseSensitive(item, "shape");
-	const cJSON *range = cJSON_GetObjectItemCaseSensitive(item, "data_offsets");
+	const cJSON *dtype = json_get(item, "dtype");
+	const cJSON *shape = json_get(item, "shape");
+	const cJSON *range = json_get(item, "data_offsets");
 	size_t count = 1, bytes;
 	int known;
 
@@ -183,61 +184,46 @@ static int read_header(struct safetensors *st, const cJSON *root, size_t header_
 	return -(sort_tensors(st, e) || check_layout(st, data, data_len, e) || check_crcs(st, e));
 }
 
-/* Reads what st->map holds; closes on failure. */
+static int refuse_length(const struct safetensors *st, uint64_t header_len, struct err *e)
+{
+	size_t printed = 0;
+
+	while (printed < 8 && st->map.data[printed] >= '\t')
+		printed++;
+	if (printed == 8)
+		return err_file(e, st->path, "text, not safetensors: of sentences text-encode makes them");
+	return err_file(e, st->path,
+		"header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
+		(unsigned long long)header_len, st->map.len);
+}
+
+/* Reads what st->map holds. */
 static int read_map(struct safetensors *st, struct err *e)
 {
-	uint64_t header_len;
-	cJSON *root = NULL;
+	const char *data = (const char *)st->map.data, *stop = NULL;
 
-	if (st->map.len < 8) {
-		err_file(e, st->path, "%zu bytes, too short for a safetensors file", st->map.len);
-		goto fail;
-	}
-	header_len = little_get(st->map.data, 8);
-	if (header_len > st->map.len - 8 || header_len > 100000000) {
-		size_t printed = 0;
-		while (printed < 8 && st->map.data[printed] >= '\t')
-			printed++;
-		if (printed == 8)
-			err_file(e, st->path, "text, not safetensors: of sentences text-encode makes them");
-		else
-			err_file(e, st->path,
-				"header of %llu bytes does not fit a file of %zu: not safetensors, or cut short",
-				(unsigned long long)header_len, st->map.len);
-		goto fail;
-	}
-	const char *stop = NULL;
-	root = cJSON_ParseWithLengthOpts((const char *)st->map.data + 8, (size_t)header_len, &stop, 0);
-	if (!root) {
-		err_file(e, st->path, "header is not JSON at offset %td",
-			stop ? stop - (const char *)st->map.data : 8);
-		goto fail;
-	}
-	for (const char *end = (const char *)st->map.data + 8 + header_len; stop < end; stop++)
-		if (*stop != ' ') {
-			err_file(e, st->path, "header has something after its JSON at offset %td",
-				stop - (const char *)st->map.data);
-			goto fail;
-		}
-	if (read_header(st, root, (size_t)header_len, e))
-		goto fail;
-	cJSON_Delete(root);
-	return 0;
-fail:
-	cJSON_Delete(root);
-	safetensors_close(st);
-	return -1;
+	if (st->map.len < 8)
+		return err_file(e, st->path, "%zu bytes, too short for a safetensors file", st->map.len);
+	const uint64_t header_len = little_get(st->map.data, 8);
+	if (header_len > st->map.len - 8 || header_len > 100000000)
+		return refuse_length(st, header_len, e);
+	SCOPED_BY(json_release)
+	cJSON *root = cJSON_ParseWithLengthOpts(data + 8, (size_t)header_len, &stop, 0);
+	if (!root)
+		return err_file(e, st->path, "header is not JSON at offset %td", stop ? stop - data : 8);
+	const char *const end = data + 8 + header_len;
+	while (stop < end && *stop == ' ')
+		stop++;
+	if (stop < end)
+		return err_file(
+			e, st->path, "header has something after its JSON at offset %td", stop - data);
+	return read_header(st, root, (size_t)header_len, e);
 }
 
 int safetensors_open(struct safetensors *st, const char *path, struct err *e)
 {
-	*st = (struct safetensors){0};
-	st->path = mem_strdup(file_name(path), e);
-	if (!st->path || file_map(path, &st->map, e)) {
-		safetensors_close(st);
-		return -1;
-	}
-	return read_map(st, e);
+	*st = (struct safetensors){.path = mem_strdup(file_name(path), e)};
+	return !st->path || file_map(path, &st->map, e) ? -1 : read_map(st, e);
 }
 
 int safetensors_open_bytes(
@@ -245,11 +231,7 @@ int safetensors_open_bytes(
 {
 	*st = (struct safetensors){.map = {.data = bytes, .len = len}, .is_borrowed = 1};
 	st->path = mem_strdup(name, e);
-	if (!st->path) {
-		safetensors_close(st);
-		return -1;
-	}
-	return read_map(st, e);
+	return st->path ? read_map(st, e) : -1;
 }
 
 void safetensors_close(struct safetensors *st)

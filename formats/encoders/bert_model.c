@@ -89,7 +89,5 @@ int bert_model_read(struct text_tower *b, const char *dir, struct err *e)
 		bad = load_all(&s, b);
 		bad |= pretrained_close(&s, b);
 	}
-	if (bad)
-		text_tower_free(b);
 	return bad ? -1 : 0;
 }

@@ -224,7 +224,5 @@ int clip_model_read(struct text_tower *c, const char *dir, struct err *e)
 		bad = load_all(&s, c, &kind);
 		bad |= pretrained_close(&s, c);
 	}
-	if (bad)
-		text_tower_free(c);
 	return bad ? -1 : 0;
 }

@@ -11,5 +11,5 @@
 /* Whether the folder's config.json is of a CLIP, or it has an open_clip_config.json. */
 int clip_model_is(const char *dir);
 
-/* Reads the configuration, and the weights as bert_model_read. Release with text_tower_free. */
+/* Reads the configuration, and the weights as bert_model_read. text_tower_free after a failure too. */
 int clip_model_read(struct text_tower *c, const char *dir, struct err *e);

@@ -293,8 +293,6 @@ int merges_read(struct bpe *b, const char *dir, int words, struct err *e)
 	const int bad =
 		!p.vocabulary || !p.merges || !p.tokenizer || !p.list || read_any(b, &p, dir, words, e);
 	mem_free_all(p.vocabulary, p.merges, p.tokenizer, p.list);
-	if (bad)
-		bpe_free(b);
 	return bad ? -1 : 0;
 }
 

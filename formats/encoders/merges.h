@@ -6,7 +6,7 @@
 #include "nn/bpe.h"
 
 /* Reads the first of these that DIR has. `words` is the encoder's number of tokens, which says how many
- * merges of a list without a vocabulary count. Release with bpe_free. */
+ * merges of a list without a vocabulary count. bpe_free after a failure too. */
 int merges_read(struct bpe *b, const char *dir, int words, struct err *e);
 
 /* n ids written out as word pieces (bpe_read) with a space between; free() it. NULL when memory is out. */

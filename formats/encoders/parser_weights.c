@@ -107,33 +107,22 @@ static int take_tensors(struct parser_weights *w, const struct safetensors *st, 
 	}
 }
 
-static int take(struct parser_weights *w, struct safetensors *st, struct err *e)
-{
-	int bad = take_tensors(w, st, e);
-
-	safetensors_close(st);
-	if (bad)
-		parser_weights_free(w);
-	return bad;
-}
-
 int parser_weights_read(struct parser_weights *w, const char *path, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	*w = (struct parser_weights){0};
-	return safetensors_open(&st, path, e) ? -1 : take(w, &st, e);
+	return -(safetensors_open(&st, path, e) || take_tensors(w, &st, e));
 }
 
 int parser_weights_default(struct parser_weights *w, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 
 	*w = (struct parser_weights){0};
-	return safetensors_open_bytes(&st, "the parser's own weights", parser_default_begin,
-		       (size_t)(parser_default_end - parser_default_begin), e)
-		       ? -1
-		       : take(w, &st, e);
+	return -(safetensors_open_bytes(&st, "the parser's own weights", parser_default_begin,
+			 (size_t)(parser_default_end - parser_default_begin), e) ||
+		 take_tensors(w, &st, e));
 }
 
 /* A row's largest number is 127 times its factor. */

@@ -143,8 +143,6 @@ int vocab_read(struct vocab *v, const char *dir, struct err *e)
 	}
 	if (!bad && (missing = vocab_finish(v)))
 		bad = err_file(e, path, "token '%s' is missing", missing);
-	if (bad)
-		vocab_free(v);
 	return bad ? -1 : 0;
 }
 

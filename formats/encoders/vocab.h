@@ -7,7 +7,7 @@
 #include <cjson/cJSON.h>
 
 /* Reads DIR/tokenizer.json or, where there is none, DIR/vocab.txt (with tokenizer_config.json, if it is
- * there). Tokenizers that wordpiece_encode does not do are refused. Release with vocab_free. */
+ * there). Tokenizers that wordpiece_encode does not do are refused. vocab_free after a failure too. */
 int vocab_read(struct vocab *v, const char *dir, struct err *e);
 
 /* Adds the tokens of a JSON object, token to id. Returns 0, or -1 with *e. */

@@ -61,11 +61,13 @@ static void read_bytes(png_structp png, png_bytep data, size_t len)
 	png_error(png, "read");
 }
 
-static void release(struct png_job *job)
+/* Gives the size to who reads, and what was read back: 0, or -1 where that is nothing. */
+static int finish(struct png_job *job, const void *made, int *height, int *width)
 {
+	*height = job->height;
+	*width = job->width;
 	mem_free_all(job->raw, job->rows);
-	job->raw = NULL;
-	job->rows = NULL;
+	return made ? 0 : -1;
 }
 
 /* Of labels, whose palette and greys are not made colours, what is transparent. */
@@ -130,7 +132,7 @@ static int decode(struct png_job *job, FILE *in)
 }
 
 /* The whole image as 8 or 16 bit (big-endian) samples of 1 or 3 channels, and one of alpha where there is
- * some. release() it in any case. */
+ * some. finish() it in any case. */
 static int read_raw(struct png_job *job, FILE *in)
 {
 	job->e->code = ERR_NONE;
@@ -177,7 +179,7 @@ static int is_clear(const struct png_job *job, size_t pixel, unsigned least)
 }
 
 /* Opens where no stream is given, reads with the job's settings, and makes room for a value of so many bytes
- * for each pixel: NULL with *e, then too release() it. */
+ * for each pixel: NULL with *e, then too finish() it. */
 static void *read_pixels(struct png_job *job, const char *path, FILE *given, size_t bytes)
 {
 	SCOPED_BY(file_release) FILE *own = given ? NULL : file_open(path, job->e);
@@ -261,10 +263,8 @@ int png_take_mask(const char *path, FILE *in, uint8_t **pixels, int *height, int
 		/* black on nothing: alpha is the mask */
 		for (size_t i = 0; i < n && cleared && !marked; i++)
 			mask[i] = !is_clear(&job, i, least);
-		*height = job.height;
-		*width = job.width;
 	}
-	release(&job);
+	finish(&job, mask, height, width);
 	if (differ && marked == n) {
 		err_file(e, job.path,
 			"no pixel is black or transparent, so that all would be of the thing: paint black what is not");
@@ -294,9 +294,7 @@ int png_read_labels(const char *path, int32_t **labels, int *height, int *width,
 			out[i] = is_none ? -1 : (int32_t)label;
 		}
 	}
-	*height = job.height;
-	*width = job.width;
-	release(&job);
+	finish(&job, out, height, width);
 	if (out && png_check_edges(job.path, (const uint32_t *)out, NULL, *height, *width, 1, e)) {
 		free(out);
 		out = NULL;
@@ -337,12 +335,9 @@ int png_read_paint(const char *path, uint32_t **paint, int *height, int *width, 
 				out[i] = (uint32_t)(first >> shift << 16 | sample(&job, i, 1) >> shift << 8 |
 						    sample(&job, i, 2) >> shift);
 		}
-		*height = job.height;
-		*width = job.width;
 	}
 	*paint = out;
-	release(&job);
-	return out ? 0 : -1;
+	return finish(&job, out, height, width);
 }
 
 uint32_t png_paint_number(uint32_t number)
@@ -365,11 +360,8 @@ static int read_png_rgb(const char *path, FILE *in, uint8_t **rgb, int *height, 
 				for (size_t k = 0; k < 3; k++)
 					q[k] = job.rows[y][x * step + k * next];
 		*rgb = out;
-		*height = job.height;
-		*width = job.width;
 	}
-	release(&job);
-	return out ? 0 : -1;
+	return finish(&job, out, height, width);
 }
 
 int image_read_rgb(const char *path, uint8_t **rgb, int *height, int *width, struct err *e)

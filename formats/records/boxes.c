@@ -125,8 +125,6 @@ int boxes_read(struct box_set *s, const char *path, struct err *e)
 	if (!bad && !s->n)
 		bad = err_file(e, file_name(path), "holds no boxes");
 	bad = bad || check_unique(s, lines, file_name(path), e);
-	if (bad)
-		boxes_free(s);
 	return bad ? -1 : 0;
 }
 

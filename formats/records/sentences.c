@@ -228,8 +228,6 @@ static int read_file(struct sentences *s, const char *path, int is_any, struct e
 	int bad = json < 0 ? -1 : json ? read_all(s, &j, e) : read_plain(s, &j, e);
 	if (!json && !bad && (path_ends(path, ".csv") || path_ends(path, ".tsv")))
 		bad = err_file(e, path, "a table: write a sentence on each line, or JSON Lines");
-	if (bad)
-		sentences_free(s);
 	return bad;
 }
 

@@ -76,12 +76,7 @@ static int read_all(struct features *f, struct err *e)
 int features_open(struct features *f, const char *path, struct err *e)
 {
 	*f = (struct features){0};
-	if (safetensors_open(&f->file, path, e))
-		return -1;
-	if (!read_all(f, e))
-		return 0;
-	features_close(f);
-	return -1;
+	return -(safetensors_open(&f->file, path, e) || read_all(f, e));
 }
 
 void features_close(struct features *f)

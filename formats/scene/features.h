@@ -22,7 +22,7 @@ struct features {
 	struct safetensors file; /* of one that was read: keeps the map alive */
 };
 
-/* Maps and checks a file. Returns 0, or -1 with *e set and nothing to close. */
+/* Maps and checks a file. Returns 0, or -1 with *e set; features_close after either. */
 int features_open(struct features *f, const char *path, struct err *e);
 void features_close(struct features *f);
 

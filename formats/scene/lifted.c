@@ -86,8 +86,6 @@ int lifted_take(struct lifted *l, struct origin *origin, const struct safetensor
 	in.bad = in.bad || origin_read(origin, st, e);
 	read_objects(l, &in);
 	read_sentences(l, &in);
-	if (in.bad)
-		lifted_free(l);
 	return in.bad ? -1 : 0;
 }
 

@@ -185,10 +185,7 @@ static int read_all(struct model *m, const struct safetensors *st, struct err *e
 int model_take(struct model *m, const struct safetensors *st, struct err *e)
 {
 	*m = (struct model){0};
-	int bad = read_all(m, st, e);
-	if (bad)
-		model_free(m);
-	return bad;
+	return read_all(m, st, e);
 }
 
 int model_read(struct model *m, const char *path, struct err *e)

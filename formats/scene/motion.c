@@ -74,12 +74,7 @@ static int read_all(struct motion *m, struct err *e)
 int motion_open(struct motion *m, const char *path, struct err *e)
 {
 	*m = (struct motion){0};
-	if (safetensors_open(&m->file, path, e))
-		return -1;
-	if (!read_all(m, e))
-		return 0;
-	motion_close(m);
-	return -1;
+	return -(safetensors_open(&m->file, path, e) || read_all(m, e));
 }
 
 void motion_close(struct motion *m)

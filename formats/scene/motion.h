@@ -21,7 +21,7 @@ struct motion {
 	struct safetensors file;
 };
 
-/* Maps and checks a file. Returns 0, or -1 with *e set and nothing to close. */
+/* Maps and checks a file. Returns 0, or -1 with *e set; motion_close after either. */
 int motion_open(struct motion *m, const char *path, struct err *e);
 void motion_close(struct motion *m);
 

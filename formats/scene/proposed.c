@@ -55,7 +55,7 @@ static void read_chosen(struct regions_file *r, struct arrays_in *in)
 
 int regions_file_read(struct regions_file *r, const char *path, struct err *e)
 {
-	struct safetensors st;
+	SCOPED_BY(safetensors_close) struct safetensors st = {0};
 	struct arrays_in in;
 	size_t nodes;
 
@@ -73,13 +73,10 @@ int regions_file_read(struct regions_file *r, const char *path, struct err *e)
 		arrays_in_fill(&in, "score", r->score, nodes);
 	r->tree.n = in.bad ? 0 : (int32_t)nodes;
 	read_chosen(r, &in);
-	const int bad = in.bad || check_tree(&r->tree, st.path, e);
-	safetensors_close(&st);
-	if (bad)
-		regions_file_free(r);
-	else
-		region_tree_span(&r->tree);
-	return bad ? -1 : 0;
+	if (in.bad || check_tree(&r->tree, st.path, e))
+		return -1;
+	region_tree_span(&r->tree);
+	return 0;
 }
 
 int regions_file_write(const struct regions_file *r, const char *path, const char *options, struct err *e)

@@ -96,8 +96,6 @@ int scene_read_splats(struct scene *s, const char *path, struct err *e)
 	if (safetensors_open(&st, path, e))
 		return -1;
 	const int bad = take_splats(s, &st, e);
-	if (bad)
-		splats_free(&s->splats);
 	return bad;
 }
 
@@ -211,8 +209,6 @@ int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e)
 
 	*c = (struct cameras){0};
 	int bad = list ? read_views(c, list, file_name(path), e) : -1;
-	if (bad)
-		cameras_free(c);
 	return bad;
 }
 

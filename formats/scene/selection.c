@@ -29,8 +29,6 @@ int selection_take(struct selection *s, const struct safetensors *st, struct err
 	arrays_in_check_unique(&in, s->refs, s->n, "refs");
 	arrays_in_check_offsets(&in, "indptr", s->indptr, s->n, items, "items");
 	arrays_in_check_index(&in, s->index, s->indptr, s->n, s->gaussians, "sentence");
-	if (in.bad)
-		selection_free(s);
 	return in.bad ? -1 : 0;
 }
 

@@ -103,8 +103,6 @@ int text_read(struct text *t, const char *path, struct err *e)
 	arrays_in_check_offsets(&in, "offsets", t->offsets, t->n, words, "words");
 	read_names(t, &in);
 	const int bad = in.bad || fingerprint_read(&t->encoder, &st, "encoder", e);
-	if (bad)
-		text_free(t);
 	return bad ? -1 : 0;
 }
 

@@ -278,11 +278,9 @@ int ply_read_like(struct splats *s, double offset[3], struct rows_report *report
 {
 	struct plyfile f;
 
-	if (plyfile_open(&f, name, map, e))
-		return -1;
-	const int bad = read_elements(s, offset, report, &f, like, e);
+	const int bad = plyfile_open(&f, name, map, e) || read_elements(s, offset, report, &f, like, e);
 	plyfile_close(&f);
-	return bad;
+	return bad ? -1 : 0;
 }
 
 static void put_header(FILE *out, const struct splats *s, const char *mean_type, int has_labels)

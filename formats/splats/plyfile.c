@@ -223,10 +223,7 @@ int plyfile_open(struct plyfile *f, const char *name, struct file_map *map, stru
 {
 	*f = (struct plyfile){.path = name, .map = *map};
 	*map = (struct file_map){0};
-	if (!read_header(f, e))
-		return 0;
-	plyfile_close(f);
-	return -1;
+	return read_header(f, e);
 }
 
 void plyfile_close(struct plyfile *f)

@@ -40,8 +40,8 @@ struct plyfile {
 	size_t at; /* offset of the next row */
 };
 
-/* Reads the header of a file that is in memory, which is f's from then on, and released on failure. `name`,
- * which must outlive f, is what messages say. Returns 0, or -1 with *e ("name:LINE: reason"). */
+/* Reads the header of a file that is in memory, which is f's from then on. `name`, which must outlive f, is
+ * what messages say. Returns 0, or -1 with *e ("name:LINE: reason"); plyfile_close after either. */
 int plyfile_open(struct plyfile *f, const char *name, struct file_map *map, struct err *e);
 void plyfile_close(struct plyfile *f);
 

@@ -31,7 +31,7 @@ size_t spz_row(const struct spz *f);
 void spz_place(struct spz *f, const unsigned char *p);
 
 /* Takes a file that is in memory out of its container (gzip, or zstd from version 4 on). `name` must outlive
- * f. Returns 0, or -1 with *e set and nothing to release. */
+ * f. Returns 0, or -1 with *e set; spz_close after either. */
 int spz_open(struct spz *f, const char *name, const struct file_map *map, struct err *e);
 void spz_close(struct spz *f);
 

@@ -251,10 +251,7 @@ int spz_open(struct spz *f, const char *name, const struct file_map *map, struct
 {
 	*f = (struct spz){.name = name};
 	const int is_gzip = map->len >= 2 && map->data[0] == 0x1f && map->data[1] == 0x8b;
-	if (!(is_gzip ? open_gzip(f, map, e) : open_plain(f, map, e)))
-		return 0;
-	spz_close(f);
-	return -1;
+	return is_gzip ? open_gzip(f, map, e) : open_plain(f, map, e);
 }
 
 void spz_close(struct spz *f)

@@ -73,10 +73,10 @@ static int blend_shares(struct responses *a, size_t n, struct err *e)
 	return 0;
 }
 
-static int ask_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
+int responses_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
 	int wants_calibration, struct err *e)
 {
-	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
+	*a = (struct responses){.answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e)};
 	if (!a->answer || alloc_answers(a, q->count, q->splats->n, e))
 		return -1;
 	for (size_t i = 0; i < q->count; i++)
@@ -89,20 +89,10 @@ static int ask_trained(struct responses *a, const struct respond_model *m, const
 	return -(bad || (m->blend == REFER_SHARES && blend_shares(a, q->splats->n, e)));
 }
 
-int responses_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
-	int wants_calibration, struct err *e)
-{
-	*a = (struct responses){0};
-	if (!ask_trained(a, m, q, wants_calibration, e))
-		return 0;
-	responses_free(a);
-	return -1;
-}
-
-static int take_selected(struct responses *a, const struct responses_selection *s, const size_t *row,
+int responses_selected(struct responses *a, const struct responses_selection *s, const size_t *row,
 	size_t count, struct err *e)
 {
-	a->answer = mem_alloc(count, sizeof *a->answer, "sentences", e);
+	*a = (struct responses){.answer = mem_alloc(count, sizeof *a->answer, "sentences", e)};
 	if (!a->answer || alloc_answers(a, count, s->gaussians, e))
 		return -1;
 	for (size_t i = 0; i < count; i++) {
@@ -114,16 +104,6 @@ static int take_selected(struct responses *a, const struct responses_selection *
 			to[s->index[k]] = 1 - RESPONSES_SELECTED;
 	}
 	return render_pack(a->responses, s->gaussians, (int)count, e);
-}
-
-int responses_selected(struct responses *a, const struct responses_selection *s, const size_t *row,
-	size_t count, struct err *e)
-{
-	*a = (struct responses){0};
-	if (!take_selected(a, s, row, count, e))
-		return 0;
-	responses_free(a);
-	return -1;
 }
 
 /* What sentences mean: sets of objects. */
@@ -256,16 +236,16 @@ static int take_answers(struct responses *a, const struct lifted *l, const struc
 	return bad ? -1 : render_pack(a->responses, l->gaussians, (int)s->n, e);
 }
 
-static int ask_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
+int responses_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
 	unsigned parts, double least, struct err *e)
 {
 	SCOPED_BY(meant_free) struct meant m = {0};
 	struct sets sets = {
 		.objects = l->objects, .chosen = mem_alloc(q->count + l->objects, l->objects, "answers", e)};
 
-	a->answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e);
-	a->sure = mem_alloc(q->count, sizeof *a->sure, "sentences", e);
-	a->when = mem_alloc(q->count, sizeof *a->when, "sentences", e);
+	*a = (struct responses){.answer = mem_alloc(q->count, sizeof *a->answer, "sentences", e),
+		.sure = mem_alloc(q->count, sizeof *a->sure, "sentences", e),
+		.when = mem_alloc(q->count, sizeof *a->when, "sentences", e)};
 	int bad = !sets.chosen || !a->answer || !a->sure || !a->when ||
 		  meant_alloc(&m, q->count, l->objects, e) || find_meant(&m, a, l, q, parts, least, e);
 	for (size_t i = 0; i < q->count && !bad; i++)
@@ -273,16 +253,6 @@ static int ask_lifted(struct responses *a, const struct lifted *l, const struct 
 	bad = bad || list_objects(a, &sets, q->wants_parts, e) || take_answers(a, l, &sets, e);
 	free(sets.chosen);
 	return bad ? -1 : 0;
-}
-
-int responses_lifted(struct responses *a, const struct lifted *l, const struct responses_question *q,
-	unsigned parts, double least, struct err *e)
-{
-	*a = (struct responses){0};
-	if (!ask_lifted(a, l, q, parts, least, e))
-		return 0;
-	responses_free(a);
-	return -1;
 }
 
 /* A Gaussian's response, where render_pack has put it. */

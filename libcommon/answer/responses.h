@@ -45,7 +45,7 @@ struct responses {
 };
 
 /* An answer for each sentence, calibrated or as trained. ERR_FORMAT where one is not finite. Returns 0, or -1
- * with *e set and nothing to free. */
+ * with *e set; responses_free after either, as of the others. */
 int responses_trained(struct responses *a, const struct respond_model *m, const struct responses_question *q,
 	int wants_calibration, struct err *e);
 
@@ -66,7 +66,7 @@ struct responses_selection {
 };
 
 /* An answer for each of `count` sentences, from its row: the pixels that selected Gaussians have more than
- * RESPONSES_SELECTED of the weight of. Returns 0, or -1 with *e set and nothing to free. */
+ * RESPONSES_SELECTED of the weight of. */
 #define RESPONSES_SELECTED 0.5f
 int responses_selected(struct responses *a, const struct responses_selection *s, const size_t *row,
 	size_t count, struct err *e);

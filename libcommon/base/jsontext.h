@@ -1,7 +1,6 @@
 /* JSON as text, written as it comes. Nothing fails here: whoever opened the stream looks at it at the end. */
 #pragma once
 
-#include <stddef.h>
 #include <stdio.h>
 
 struct jsontext {

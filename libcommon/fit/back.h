@@ -7,7 +7,6 @@
  *dL/de over pixels in (u, v). */
 #pragma once
 
-#include "base/cpu.h"
 #include "base/err.h"
 #include "splat/blend.h"
 #include "splat/project.h"

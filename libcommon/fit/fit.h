@@ -11,7 +11,6 @@
 #include "fit/parameters.h"
 #include "fit/photo_loss.h"
 #include "fit/photograph.h"
-#include "splat/render.h"
 
 #include <stdint.h>
 

@@ -113,11 +113,8 @@ int mask_index_twice(const struct mask_index *x, size_t *earlier, size_t *later)
 int mask_lookup_make(struct mask_lookup *l, const struct mask *masks, size_t n, struct err *e)
 {
 	*l = (struct mask_lookup){0};
-	if (!mask_index_make(&l->by_ref, masks, n, MASK_BY_REF, e) &&
-		!mask_index_make(&l->by_object, masks, n, MASK_BY_OBJECT, e))
-		return 0;
-	mask_lookup_free(l);
-	return -1;
+	return -(mask_index_make(&l->by_ref, masks, n, MASK_BY_REF, e) ||
+		 mask_index_make(&l->by_object, masks, n, MASK_BY_OBJECT, e));
 }
 
 void mask_lookup_free(struct mask_lookup *l)

@@ -1,7 +1,6 @@
 /* A mask drawn over a picture, so that a person sees at once whether it is right. */
 #pragma once
 
-#include <stddef.h>
 #include <stdint.h>
 
 /* Draws mask (height,width) of 0 and 1 over rgb (height,width,3) in place: outside pale, inside tinted, and

@@ -66,10 +66,9 @@ int pool_make(struct pool *p, const struct mask *candidates, size_t n, struct er
 {
 	*p = (struct pool){.n = n, .candidates = candidates};
 	p->groups = mem_alloc(n, sizeof *p->groups, "candidates", e);
-	if (p->groups && !mask_index_make(&p->index, candidates, n, MASK_BY_OBJECT, e) && !make_groups(p, e))
-		return 0;
-	pool_free(p);
-	return -1;
+	return !p->groups || mask_index_make(&p->index, candidates, n, MASK_BY_OBJECT, e) || make_groups(p, e)
+		       ? -1
+		       : 0;
 }
 
 void pool_free(struct pool *p)

@@ -256,8 +256,6 @@ int linkage_make(struct linkage *l, int32_t leaves, const double *size, const st
 		l->size[i] = size[i];
 	}
 	bad = bad || graph_make(&g, leaves, edges, count, e) || join_all(&g, l, e);
-	if (bad)
-		linkage_free(l);
 	return bad ? -1 : 0;
 }
 

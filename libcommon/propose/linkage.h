@@ -24,7 +24,7 @@ struct linkage {
 	double *size;		/* (nodes) */
 };
 
-/* size (leaves), above 0. Returns 0, or -1 with *e set for want of memory and nothing to free. */
+/* size (leaves), above 0. Returns 0, or -1 with *e set for want of memory; linkage_free after either. */
 int linkage_make(struct linkage *l, int32_t leaves, const double *size, const struct linkage_edge *edges,
 	size_t count, double power, struct err *e);
 void linkage_free(struct linkage *l);

@@ -186,7 +186,5 @@ int pieces_make(struct pieces *p, const uint8_t *rgb, int height, int width, str
 		find_contrast(lab, height, width, contrast);
 		bad = join_pieces(p, contrast, flow(contrast, height, width, p->piece, number), e);
 	}
-	if (bad)
-		pieces_free(p);
 	return bad ? -1 : 0;
 }

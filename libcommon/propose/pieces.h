@@ -20,6 +20,6 @@ struct pieces {
 	int32_t *segment;
 };
 
-/* rgb (height,width,3). Returns 0, or -1 with *e set for want of memory and nothing to free. */
+/* rgb (height,width,3). Returns 0, or -1 with *e set for want of memory; pieces_free after either. */
 int pieces_make(struct pieces *p, const uint8_t *rgb, int height, int width, struct err *e);
 void pieces_free(struct pieces *p);

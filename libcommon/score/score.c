@@ -100,14 +100,11 @@ int score_match(struct score_pairs *pairs, const struct mask *truth, size_t trut
 	struct match m = {.pairs = pairs, .truth = truth};
 
 	*pairs = (struct score_pairs){0};
-	if (mask_lookup_make(&m.lookup, truth, truth_n, e))
-		return -1;
 	m.state = mem_zalloc(truth_n, 1, "masks", e);
-	const int bad = !m.state || match_all(&m, truth_n, predictions, prediction_n, e);
+	const int bad = !m.state || mask_lookup_make(&m.lookup, truth, truth_n, e) ||
+			match_all(&m, truth_n, predictions, prediction_n, e);
 	mask_lookup_free(&m.lookup);
 	free(m.state);
-	if (bad)
-		score_pairs_free(pairs);
 	return bad ? -1 : 0;
 }
 

@@ -49,7 +49,7 @@ extern const double score_cut[3]; /* 0.25, 0.5, 0.75 */
  *  - a prediction without ref: every truth of that view and object, but for those that a prediction's ref
  * names;
  *  - a truth that no prediction met: a pair without a prediction.
- * In that order, and each in the order given. Release with score_pairs_free. */
+ * In that order, and each in the order given. score_pairs_free after a failure too. */
 int score_match(struct score_pairs *pairs, const struct mask *truth, size_t truth_n,
 	const struct mask *predictions, size_t prediction_n, struct err *e);
 void score_pairs_free(struct score_pairs *pairs);

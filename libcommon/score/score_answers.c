@@ -252,8 +252,6 @@ int answers_make(struct answers *a, const struct answer_sentence *sentences, siz
 		bad = answer_one(a, &t, &sentences[i], predictions, &refs, e);
 	if (!bad)
 		count_unknown(a, &t, sentences, n);
-	if (bad)
-		answers_free(a);
 	return bad ? -1 : 0;
 }
 

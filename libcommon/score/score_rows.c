@@ -151,10 +151,8 @@ int score_table_objects(struct score_table *t, const struct score_sample *s, str
 		end = object_end(s, begin);
 		struct score_sample one = {
 			end - begin, s->pairs + begin, s->other ? s->other + begin : NULL, s->how};
-		if (table_add(t, s->pairs[begin].object, &one, e)) {
-			score_table_free(t);
+		if (table_add(t, s->pairs[begin].object, &one, e))
 			return -1;
-		}
 	}
 	return 0;
 }
@@ -187,7 +185,5 @@ int score_table_groups(struct score_table *t, const struct score_sample *s, cons
 		if (one.n || always & bit)
 			bad = table_add(t, names[g], &one, e);
 	}
-	if (bad)
-		score_table_free(t);
 	return bad ? -1 : 0;
 }

@@ -7,8 +7,6 @@
 #include "geom/camera.h"
 #include "train/view_source.h"
 
-#include <stdint.h>
-
 /* footprint (n): the size of a pixel at each of the points means (n,3), in the scene's units, in the view
  * that sees it largest; INFINITY where no view has it within its image. */
 void octree_input_footprints(

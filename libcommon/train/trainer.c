@@ -118,8 +118,6 @@ int trainer_init(
 	*t = (struct trainer){.rates = o->rates, .warm_steps = from->lifted ? (long)o->warm : 0};
 	refer_layout_init(&t->layout, o->interaction, from->text_width, (int)o->feature_width);
 	int bad = init(t, from, o, e);
-	if (bad)
-		trainer_free(t);
 	return bad;
 }
 

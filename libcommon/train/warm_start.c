@@ -166,8 +166,6 @@ int warm_start_init(struct warm_start *w, const struct warm_start_source *from,
 	bad = bad || match(w, from, numbers, lifted, e) || make_shares(w, from, lifted, e) ||
 	      make_pixels(w, rows, e) || make_masks(w, from, rows, numbers, e) ||
 	      train_order_init(&w->order, &w->view, 1, WARM_START_BATCH, contrast, seed, e);
-	if (bad)
-		warm_start_free(w);
 	return bad ? -1 : 0;
 }
 

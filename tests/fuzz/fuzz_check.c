@@ -106,8 +106,7 @@ int fuzz_one(const char *path)
 	struct err e = {0};
 	struct check c;
 
-	if (check_file(&c, path, &e))
-		return -1;
+	int bad = check_file(&c, path, &e);
 	check_free(&c);
-	return 0;
+	return bad;
 }

@@ -228,6 +228,7 @@ static void refused(const char *leave_out, const char *bend, const char *expecte
 	snprintf(message, sizeof message, "%s/weights.safetensors: %s", work, expected);
 	CHECK(bert_model_read(&b, work, &e) && e.code == ERR_FORMAT && !strcmp(e.message, message), "%s",
 		e.message);
+	text_tower_free(&b);
 }
 
 static void vocab_txt(const struct vocab *json)

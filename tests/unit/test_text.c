@@ -154,10 +154,10 @@ static void expect(const struct text *t, const char *expected)
 	struct err e = {0};
 
 	CHECK(!text_write(t, path, "", &e), "%s", e.message);
-	if (!CHECK(text_read(&out, path, &e), "'%s' was accepted", expected)) {
-		text_free(&out);
+	const int bad = text_read(&out, path, &e);
+	text_free(&out);
+	if (!CHECK(bad, "'%s' was accepted", expected))
 		return;
-	}
 	size_t have = strlen(e.message), want = strlen(expected);
 	CHECK(e.code == ERR_FORMAT && have > want && !strcmp(e.message + have - want, expected), "%s",
 		e.message);

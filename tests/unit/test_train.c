@@ -379,6 +379,7 @@ static void test_no_weight(void)
 	sum_weights(s.views, s.weight);
 	const struct trainer_source source = source_of(&s);
 	CHECK(trainer_init(&t, &source, &options, &e) && e.code == ERR_FORMAT, "%s", e.message);
+	trainer_free(&t);
 }
 
 /* A Gaussian that no view sees, put first, changes nothing that is learned. */
