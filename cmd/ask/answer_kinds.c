@@ -164,6 +164,10 @@ static int answer_whether(struct answer_told *t, struct asking_answer *found, st
 		return -1;
 	if (!found->count)
 		return 0;
+	if (second.unknown > found->unknown && !second.is_anchor_unknown) {
+		t->asked.kind = QUESTION_UNTOLD;
+		return 0;
+	}
 	size_t k = 0;
 	/* a second colour of a thing is hardly looked for: "the yellow box that is black" */
 	const char *last = strrchr(t->asked.text[1], ' ');
@@ -318,7 +322,7 @@ static void take_motion(struct answer_told *t, struct asking_answer *found)
 {
 	static const char *const unknown[QUESTION_KINDS] = {[QUESTION_WHEN] = "when that is, is not known",
 		[QUESTION_THEN] = "where things are at another time, --time tells",
-		[QUESTION_SPEED] = "how fast things are, is not told"};
+		[QUESTION_UNTOLD] = "a scene does not tell that"};
 	const int is_moving = t->asking->model.tracks.times > 0;
 
 	if (t->asked.kind == QUESTION_WHICH && found->is_motion && question_is_yes_or_no(t->understood)) {
@@ -365,6 +369,9 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
 		keep_holding(found, 0, t->asked.text[0]);
 		drop_at_nothing(t, found);
 	}
+	if (t->asked.kind == QUESTION_THERE && question_is_of_thing(t->asked.text[0]) && found->unknown &&
+		!found->is_anchor_unknown)
+		t->asked.kind = QUESTION_UNTOLD;
 	if (t->asked.kind == QUESTION_THERE)
 		t->is_yes = is_there(&t->asked, (int)found->count);
 	*found->reason = t->asked.most && found->count ? 0 : *found->reason;

@@ -213,6 +213,7 @@ static void watch(void *data, size_t i, const struct meaning *m)
 	find_anchor(m, w->answer);
 	w->answer->places = m->arrangement;
 	w->answer->words = m->vocabulary;
+	w->answer->unknown = m->unknown;
 	for (size_t o = 0; o < m->arrangement->n; o++)
 		memcpy(w->answer->centres[o], m->arrangement->objects[o].centre,
 			sizeof w->answer->centres[o]);

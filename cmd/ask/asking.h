@@ -71,6 +71,7 @@ struct asking_answer {
 	size_t runner_up;      /* the likeliest other object; ASKING_NONE */
 	size_t unclear[2];     /* two things of which the question's one anchor may be either; ASKING_NONE */
 	int is_anchor_unknown; /* nothing here is known as what a place is told by */
+	size_t unknown;	       /* words of it that say something, and nothing of any object */
 	int is_motion;	       /* it says something of motion: */
 	enum motion_kind motion;     /* how the thing moves; MOTION_NONE: not said */
 	double when[2];		     /* from when to when things move so */

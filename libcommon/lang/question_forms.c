@@ -9,7 +9,7 @@
  * count?" */
 static int is_cue(const struct asked *q, int i)
 {
-	static const char nouns[] = "number|count|quantity|qty|total|tally|sum|figure|headcount|units";
+	static const char nouns[] = "number|count|quantity|qty|nr|total|tally|sum|figure|headcount|units";
 	const struct tokens *t = q->t;
 
 	if (tokens_is(t, i, "many|much"))
@@ -128,6 +128,47 @@ static struct part find_statement(const struct asked *q, unsigned *tags)
 	return p;
 }
 
+/* What is said, by which verb, behind which thing: "the mug", "stands" and "on the tray". */
+struct statement {
+	struct part of;
+	int verb, rest; /* where what is said begins; verb is of.end where there is none */
+	enum { SAID_BE, SAID_THERE, SAID_HAVE } by;
+};
+
+/* Where a statement's thing ends that has no verb: "kettle left of the laptop, right?" */
+static int find_place(const struct tokens *t, struct part p)
+{
+	int i = p.begin;
+
+	while (i < p.end && !is_class(t, i, CLOSED_PLACE))
+		i++;
+	return asked_has_content(t, (struct part){p.begin, i}) ? i : p.end;
+}
+
+/* is_ours: of what we have or see; is_sure: that it is to be confirmed. */
+static int find_verb(struct statement *s, const struct tokens *t, int is_ours, int is_sure)
+{
+	static const char poses[] =
+		"stand|stands|sit|sits|lie|lies|hang|hangs|rest|rests|lean|leans|stay|stays";
+	const struct part p = s->of;
+	int i = p.begin;
+
+	if (is_ours && (is_class(t, i, CLOSED_HAVE) || (is_sure && tokens_is(t, i, "see|spot|notice")))) {
+		*s = (struct statement){{i, i}, i, i + 1 + tokens_is(t, i + 1, "got"), SAID_THERE};
+		return 1;
+	}
+	while (i < p.end && !is_class(t, i, CLOSED_BE) &&
+		!(is_sure && i > p.begin && (tokens_is(t, i, poses) || is_class(t, i, CLOSED_HAVE))))
+		i++;
+	s->by = is_class(t, i, CLOSED_HAVE) ? SAID_HAVE : tokens_is(t, i - 1, "there") ? SAID_THERE : SAID_BE;
+	s->rest = i + 1;
+	if (i == p.end && is_sure)
+		s->rest = i = find_place(t, p);
+	s->of.end = s->verb = i;
+	return i < p.end && s->rest < p.end &&
+	       (s->by == SAID_THERE || asked_has_content(t, (struct part){p.begin, i}));
+}
+
 /* "There's no cat, is there?", "you have a cat?": is there a cat? "The cat is black?": is the cat black? */
 static int say_statement(struct asked *q)
 {
@@ -136,45 +177,41 @@ static int say_statement(struct asked *q)
 	unsigned tags;
 	struct part p = find_statement(q, &tags);
 	int is_told = 0, is_ours = 0, is_asked = tags || (!p.begin && p.end == t->n && strchr(q->text, '?'));
+	struct statement s;
 
 	for (; p.begin < p.end && !tokens_is(t, p.begin, "there|none|not") &&
-		(tokens_is(t, p.begin, "surely|that") || question_is_idle(t, p.begin));
+		(tokens_is(t, p.begin, "surely|that") || question_is_idle(t, p.begin)) &&
+		!(is_ours && tokens_is(t, p.begin, "see"));
 		p.begin++) {
 		is_told |= tokens_is(t, p.begin, "tell|say|know|wonder|check|see");
 		is_asked |= is_told && tokens_is(t, p.begin, "if|whether");
 		is_ours |= is_class(t, p.begin, CLOSED_PRONOUN);
 	}
-	int verb = p.begin;
-	while (verb < p.end && !is_class(t, verb, CLOSED_BE) &&
-		!(is_ours && verb == p.begin && is_class(t, verb, CLOSED_HAVE)))
-		verb++;
-	const int is_owned = is_class(t, verb, CLOSED_HAVE);
-	const int is_there = is_owned || tokens_is(t, verb - 1, "there");
-	if (!is_asked || verb >= p.end - 1 ||
-		(!is_there && !asked_has_content(t, (struct part){p.begin, verb})))
+	s.of = p;
+	if (!is_asked || !find_verb(&s, t, is_ours, tags != 0))
 		return 0;
 	for (int i = p.begin; i < p.end; i++)
 		if (tokens_class(t, i) >= 0 && other >> tokens_class(t, i) & 1 &&
-			(i < verb || !tokens_is(t, i, "that")))
+			(i < s.verb || !tokens_is(t, i, "that")))
 			return 0;
-	int rest = verb + 1 + (is_owned && tokens_is(t, verb + 1, "got"));
-	while (tags & 2 && rest < p.end && tokens_is(t, rest, "not|n't|no"))
-		rest++;
-	if (rest >= p.end)
+	while (tags & 2 && s.rest < p.end && tokens_is(t, s.rest, "not|n't|no"))
+		s.rest++;
+	if (s.rest >= p.end)
 		return 0;
-	asked_put(q, is_there && !tokens_is(t, verb, "are|'re|were") ? "is there "
-		     : is_there					     ? "are there "
-								     : "is ");
-	if (!is_there && tokens_is(t, p.begin, "not")) {
+	asked_put(q, s.by == SAID_HAVE			    ? "does "
+		     : s.by == SAID_BE			    ? "is "
+		     : tokens_is(t, s.verb, "are|'re|were") ? "are there "
+							    : "is there ");
+	if (s.by != SAID_THERE && tokens_is(t, s.of.begin, "not")) {
 		asked_put(q, "none");
-		p.begin += 1 + tokens_is(t, p.begin + 1, "one|a");
+		s.of.begin += 1 + tokens_is(t, s.of.begin + 1, "one|a");
 	}
-	if (!is_there && p.begin < verb) {
-		asked_put(q, tokens_is(t, p.begin, "of") ? " " : "");
-		asked_put_part(q, (struct part){p.begin, verb});
-		asked_put(q, " ");
+	if (s.by != SAID_THERE && s.of.begin < s.of.end) {
+		asked_put(q, tokens_is(t, s.of.begin, "of") ? " " : "");
+		asked_put_part(q, s.of);
+		asked_put(q, s.by == SAID_HAVE ? " have " : " ");
 	}
-	asked_put_part(q, (struct part){rest, p.end});
+	asked_put_part(q, (struct part){s.rest, p.end});
 	return 1;
 }
 

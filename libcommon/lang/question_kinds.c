@@ -16,7 +16,7 @@ static const struct {
 
 static const char *const names[QUESTION_KINDS] = {"which", "list", "number", "colour", "look", "distance",
 	"height", "width", "size", "compare", "more", "either", "there", "whether", "set", "tally", "even",
-	"majority", "surplus", "same", "when", "then", "speed"};
+	"majority", "surplus", "same", "when", "then", "untold"};
 
 const char *question_name(enum question_kind kind)
 {
@@ -345,6 +345,17 @@ int question_is_yes_or_no(const char *text)
 	tokens_take(&t, text, NULL, NULL, 0);
 	const int class = t.n ? tokens_class(&t, 0) : CLOSED_CLASSES;
 	return class == CLOSED_BE || class == CLOSED_AUXILIARY;
+}
+
+int question_is_of_thing(const char *text)
+{
+	struct tokens t;
+
+	tokens_take(&t, text, NULL, NULL, 0);
+	for (int i = 0; i < t.n; i++)
+		if (tokens_class(&t, i) == CLOSED_SIZE) /* "equally high" */
+			return 0;
+	return question_is_yes_or_no(text) && tokens_is(&t, 1, "the|this|that|these|those|my|your");
 }
 
 int question_is_half(const char *text)

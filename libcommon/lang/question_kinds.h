@@ -28,7 +28,7 @@ enum question_kind {
 	QUESTION_SAME,	   /* whether things are alike in a size or, with no relation, in colour */
 	QUESTION_WHEN,	   /* when a thing moves */
 	QUESTION_THEN,	   /* where it is at the end, or was at the start */
-	QUESTION_SPEED,	   /* how fast it is */
+	QUESTION_UNTOLD,   /* what no scene tells: how fast it is, who owns it, why it is there */
 	QUESTION_KINDS
 };
 
@@ -69,6 +69,8 @@ int question_is_open(const char *text);
 
 /* Whether a text asks for yes or no: "does the mug fall?" */
 int question_is_yes_or_no(const char *text);
+/* The same of something that is known to be there: "is the mug full?" */
+int question_is_of_thing(const char *text);
 
 /* Whether a text asks for a whole side of the scene: "on the left side". */
 int question_is_half(const char *text);

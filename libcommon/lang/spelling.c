@@ -126,8 +126,9 @@ static int find_repair(const char *word, const char *const *known, int known_cou
 	struct suspect s = {word, 6, right};
 
 	token_lemma(word, lemma);
-	if (is_known(word, lemma, known, known_count))
-		return 0;
+	if (is_known(word, lemma, known, known_count) ||
+		(wordnet_is_there() && wordnet_is_noun(lemma) && wordnet_is_verb(lemma)))
+		return 0; /* "cost" is none of "cots" */
 	if (wordnet_is_there() && !wordnet_is_noun(lemma))
 		s.least = 5;
 	return find_right(&s, known, known_count) && !wordnet_is_adjective(word); /* an adjective is none */

@@ -35,6 +35,12 @@ static void forms(void)
 	is("bring the mug, the jug and the tray", QUESTION_WHICH, "bring the mug, the jug and the tray", "");
 	is("there's no mug, is there?", QUESTION_THERE, "there is mug", "");
 	is("you've got a mug, haven't you?", QUESTION_THERE, "is there a mug", "");
+	is("mug left of the tray, correct?", QUESTION_WHETHER, "mug", "mug that is left of the tray");
+	is("the mug stands on the tray, doesn't it?", QUESTION_WHETHER, "the mug",
+		"the mug that is on the tray");
+	is("The mug has a handle, right?", QUESTION_WHETHER, "The mug", "The mug with a handle");
+	is("you see a mug, right?", QUESTION_THERE, "is there a mug", "");
+	is("the mug left of the tray", QUESTION_WHICH, "the mug left of the tray", "");
 	is("The mug is red?", QUESTION_WHETHER, "The mug", "The mug that is red");
 	is("the mug is red", QUESTION_WHICH, "the mug is red", "");
 	is("Not one of the mugs is red: true or false?", QUESTION_THERE, "the mugs that are red", "");
@@ -43,6 +49,17 @@ static void forms(void)
 	is("might something lie there?", QUESTION_THERE, "might something lie there?", "");
 	is("mum, did you spot a spoon?", QUESTION_THERE, "mum, did you spot a spoon?", "");
 	is("could you kindly show me the spoon?", QUESTION_WHICH, "could you kindly show me the spoon?", "");
+}
+
+/* What splats and sentences cannot tell. */
+static void untold(void)
+{
+	is("who bought the mug?", QUESTION_UNTOLD, "the mug", "");
+	is("Who is by the mug?", QUESTION_SET, "Who is by the mug?", "");
+	is("how much does the mug weigh?", QUESTION_UNTOLD, "the mug", "");
+	is("what's the price of the red mug?", QUESTION_UNTOLD, "the red mug", "");
+	is("is the mug switched on?", QUESTION_UNTOLD, "the mug", "");
+	is("is the mug on the tray?", QUESTION_WHETHER, "the mug", "the mug that is on the tray");
 }
 
 static void kinds(void)
@@ -142,6 +159,7 @@ int main(void)
 {
 	kinds();
 	forms();
+	untold();
 	ways();
 	words();
 	return unit_end();
