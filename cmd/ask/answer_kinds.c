@@ -164,20 +164,16 @@ static int answer_whether(struct answer_told *t, struct asking_answer *found, st
 		return -1;
 	if (!found->count)
 		return 0;
-	if (second.unknown > found->unknown && !second.is_anchor_unknown) {
+	size_t k = 0;
+	const enum answer_look look = answer_look(t, found->things[0]);
+	if (look == LOOK_NONE ? second.unknown > found->unknown && !second.is_anchor_unknown
+			      : look == LOOK_UNTOLD) {
 		t->asked.kind = QUESTION_UNTOLD;
 		return 0;
 	}
-	size_t k = 0;
-	/* a second colour of a thing is hardly looked for: "the yellow box that is black" */
-	const char *last = strrchr(t->asked.text[1], ' ');
-	const int colour =
-		last && !strcmp(t->asked.text[1] + strlen(t->asked.text[0]) + strlen(" that is"), last)
-			? colour_word(last + 1)
-			: -1;
-	while (k < found->count &&
-		(colour >= 0 ? answer_is_coloured(t, found->things[k], colour)
-			     : is_of(&second, found->things[k]) && !is_at_nothing(&second, found->things[k])))
+	while (k < found->count && (look == LOOK_NONE ? is_of(&second, found->things[k]) &&
+								!is_at_nothing(&second, found->things[k])
+						      : answer_look(t, found->things[k]) == LOOK_YES))
 		k++;
 	size_t more = 0;
 	for (size_t i = 0; i < second.count; i++)

@@ -65,18 +65,6 @@ static void say_colours(const struct answer_told *t, size_t thing, struct parse_
 	}
 }
 
-int answer_is_coloured(const struct answer_told *t, size_t thing, int colour)
-{
-	char own[CALLING_TEXT] = "";
-	struct parse_words words = {own, 0, sizeof own};
-	int is = 0;
-
-	say_colours(t, thing, &words);
-	for (int c = 0; c < COLOUR_WORDS; c++)
-		is |= strstr(own, colour_name(c)) && colour_words_alike(c, colour) > much_alike;
-	return is;
-}
-
 /* The pattern that sentences say of a thing, or else its Gaussians show. */
 static const char *find_pattern(const struct answer_told *t, size_t thing)
 {
@@ -96,10 +84,80 @@ static const char *find_pattern(const struct answer_told *t, size_t thing)
 	return patterns[most];
 }
 
+/* Whether a word is one of a list with spaces around each. */
+static int words_have(const char *list, const char *word)
+{
+	char padded[TOKEN_LENGTH + 2];
+
+	snprintf(padded, sizeof padded, " %s ", word);
+	return strstr(list, padded) != NULL;
+}
+
+/* The material that a lemma tells of, -1: none. Those that nobody tells apart are one. */
+static int material_of(const char *lemma)
+{
+	static const char *const alike[] = {
+		" metal metallic steel iron tin aluminium aluminum copper brass bronze silver gold chrome ",
+		" wood wooden timber oak pine plywood bamboo wicker rattan cork straw ",
+		" plastic acrylic vinyl nylon silicone foam ", " rubber ", " glass crystal ",
+		" ceramic porcelain china clay terracotta ", " stone marble concrete granite ",
+		" leather suede ",
+		" cloth fabric textile cotton wool woollen woolen woolly linen silk denim velvet felt fleece fur furry "
+		"plush polyester canvas ",
+		" paper cardboard card ", " wax "};
+	int k = (int)(sizeof alike / sizeof *alike) - 1;
+
+	while (k >= 0 && !words_have(alike[k], lemma))
+		k--;
+	return k;
+}
+
+static int is_coloured(const struct answer_told *t, size_t thing, int colour)
+{
+	char own[CALLING_TEXT] = "";
+	struct parse_words words = {own, 0, sizeof own};
+	int is = 0;
+
+	say_colours(t, thing, &words);
+	for (int c = 0; c < COLOUR_WORDS; c++)
+		is |= strstr(own, colour_name(c)) && colour_words_alike(c, colour) > much_alike;
+	return is;
+}
+
+static enum answer_look is_made(const struct answer_told *t, size_t thing, int material)
+{
+	const struct vocabulary *v = t->answer->words;
+	enum answer_look is = LOOK_UNTOLD;
+
+	for (size_t i = 0; i < v->n; i++) {
+		const int said = v->items[i].object == thing && v->items[i].role == VOCABULARY_ATTRIBUTE
+					 ? material_of(v->items[i].lemma)
+					 : -1;
+		is = said < 0 || is == LOOK_YES ? is : said == material ? LOOK_YES : LOOK_NO;
+	}
+	return is;
+}
+
+enum answer_look answer_look(const struct answer_told *t, size_t thing)
+{
+	static const char is[] = " that is", made[] = " that is made ";
+	const char *said = t->asked.text[1] + strlen(t->asked.text[0]), *last = strrchr(said, ' ');
+	const int is_plain = last && last == said + strlen(is);
+	const int colour = is_plain ? colour_word(last + 1) : -1;
+	const int material =
+		is_plain || (last && !strncmp(said, made, strlen(made))) ? material_of(last + 1) : -1;
+
+	if (colour >= 0) /* a second colour is hardly looked for: "the yellow box that is black" */
+		return is_coloured(t, thing, colour) ? LOOK_YES : LOOK_NO;
+	return material < 0 ? LOOK_NONE : is_made(t, thing, material);
+}
+
 /* What else sentences say of a thing. */
 static void say_looks(const struct answer_told *t, size_t thing, struct parse_words *to)
 {
 	const struct vocabulary *v = t->answer->words;
+	const int is_of = strstr(t->question, "material") || strstr(t->question, "made ") ||
+			  strstr(t->question, "built ");
 
 	if (strstr(t->question, "pattern")) {
 		parse_words_add(to, find_pattern(t, thing));
@@ -107,7 +165,8 @@ static void say_looks(const struct answer_told *t, size_t thing, struct parse_wo
 	}
 	for (size_t i = 0; i < v->n; i++)
 		if (v->items[i].object == thing && v->items[i].role == VOCABULARY_ATTRIBUTE &&
-			colour_word(v->items[i].lemma) < 0 && !strstr(to->to, v->items[i].lemma)) {
+			colour_word(v->items[i].lemma) < 0 && !strstr(to->to, v->items[i].lemma) &&
+			(!is_of || material_of(v->items[i].lemma) >= 0)) {
 			parse_words_add(to, to->n ? ", " : "");
 			parse_words_add(to, v->items[i].lemma);
 		}
@@ -161,12 +220,10 @@ static void say_part(const struct vocabulary *v, size_t thing, const char *part,
 /* Words for the thing itself, as far as its colour goes. */
 static int is_aspect(const char *noun)
 {
-	static const char aspects[] = " side top front back bottom inside outside middle rest body surface "
-				      "whole pair set piece ";
-	char padded[TOKEN_LENGTH + 2];
-
-	snprintf(padded, sizeof padded, " %s ", noun);
-	return strstr(aspects, padded) != NULL;
+	return words_have(
+		" side top front back bottom inside outside middle rest body surface whole pair set "
+		"piece ",
+		noun);
 }
 
 int answering_colour(struct answer_told *t, struct asking_answer *found, struct asking *a,

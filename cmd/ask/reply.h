@@ -77,8 +77,10 @@ int kinds_answer(struct answer_told *t, struct asking_answer *found, struct aski
  * to fit. */
 void answer_looks(const struct answer_told *t, int is_colour, char *to, size_t room);
 
-/* Whether a thing is of a colour word's colour (lang/colours.h). */
-int answer_is_coloured(const struct answer_told *t, size_t thing, int colour);
+/* Whether a thing has the one look that the second part of the question asks of it: a colour
+ * (lang/colours.h), or what sentences say that it is made of. */
+enum answer_look { LOOK_NONE /* asks for no such look */, LOOK_NO, LOOK_YES, LOOK_UNTOLD };
+enum answer_look answer_look(const struct answer_told *t, size_t thing);
 
 /* A line for each thing, or for a distance, or one that says why there is none; after the explanation, where
  * there is one. */

@@ -42,13 +42,13 @@ setup() {
 	done <things
 }
 
-@test "the colour of a part is what a sentence says of it, and never that of the whole" {
+@test "the colour of a part, and what a thing is made of, are what a sentence says, or are not known" {
 	real=${ENCODER_CACHE:-${XDG_CACHE_HOME:-$HOME/.cache}/refersplat/encoder}
 	[ -e "$real/config.json" ] || skip "make encoder has not been run" # the tiny one takes few such sentences apart
 	thing=$(head -n 1 things)
 	mkdir -p parts/lifted
 	ln -s ../run/scene parts/scene
-	{ cat sentences.jsonl; jq -nc --arg thing "$thing" '{ref: "part", object: $thing, split: "train", text: "the \($thing) with a turquoise handle"}'; } >sentences.parts.jsonl
+	{ cat sentences.jsonl; jq -nc --arg thing "$thing" '{ref: "part", object: $thing, split: "train", text: "the wooden \($thing) with a turquoise handle"}'; } >sentences.parts.jsonl
 	"$BIN/text-encode" -q --model "$real" -o parts.safetensors sentences.parts.jsonl
 	"$BIN/refer-lift" -q --names masks --scene run/scene --weights weights --text parts.safetensors -o parts/lifted/model.safetensors \
 		--masks <(cat truth.jsonl; jq -c --arg thing "$thing" 'select(.object == $thing) | .ref = "part"' truth.jsonl)
@@ -57,6 +57,9 @@ setup() {
 		[ "$(part "$question" | jq -r .value)" = turquoise ]
 	done
 	part "what colour is the $thing?" | jq -e --arg colour "${thing%% *}" '.value | contains($colour)'
+	part "what is the $thing made of?" | jq -e '.value | contains("wooden")'
+	[ "$(part "is the $thing made of wood?" | jq .yes)" = true ]
+	[ "$(part "is the $thing made of metal?" | jq .yes)" = false ]
 	part "what colour is the lid of the $thing?" >said || [ $? = 1 ]
 	jq -e '.answered | not' said
 }

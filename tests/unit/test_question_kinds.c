@@ -44,6 +44,8 @@ static void forms(void)
 	is("The mug is red?", QUESTION_WHETHER, "The mug", "The mug that is red");
 	is("the mug is red", QUESTION_WHICH, "the mug is red", "");
 	is("Not one of the mugs is red: true or false?", QUESTION_THERE, "the mugs that are red", "");
+	is("is the mug made of glass?", QUESTION_WHETHER, "the mug", "the mug that is made of glass");
+	is("is the mug made of glass or metal?", QUESTION_EITHER, "the mug", "the mug that is glass");
 	is("isn't the mug red?", QUESTION_WHETHER, "the mug", "the mug that is red");
 	is("how many of the mugs aren't red?", QUESTION_NUMBER, "the mugs that are not red", "");
 	is("might something lie there?", QUESTION_THERE, "might something lie there?", "");
