@@ -145,12 +145,13 @@ static int find_place(const struct tokens *t, struct part p)
 	return asked_has_content(t, (struct part){p.begin, i}) ? i : p.end;
 }
 
-/* is_ours: of what we have or see; is_sure: that it is to be confirmed. */
-static int find_verb(struct statement *s, const struct tokens *t, int is_ours, int is_sure)
+/* is_ours: of what we have or see; tags: of find_statement, by which it is to be confirmed. */
+static int find_verb(struct statement *s, const struct tokens *t, int is_ours, unsigned tags)
 {
 	static const char poses[] =
 		"stand|stands|sit|sits|lie|lies|hang|hangs|rest|rests|lean|leans|stay|stays";
 	const struct part p = s->of;
+	const int is_sure = tags != 0;
 	int i = p.begin;
 
 	if (is_ours && (is_class(t, i, CLOSED_HAVE) || (is_sure && tokens_is(t, i, "see|spot|notice")))) {
@@ -162,7 +163,7 @@ static int find_verb(struct statement *s, const struct tokens *t, int is_ours, i
 		i++;
 	s->by = is_class(t, i, CLOSED_HAVE) ? SAID_HAVE : tokens_is(t, i - 1, "there") ? SAID_THERE : SAID_BE;
 	s->rest = i + 1;
-	if (i == p.end && is_sure)
+	if (i == p.end && tags & 4)
 		s->rest = i = find_place(t, p);
 	s->of.end = s->verb = i;
 	return i < p.end && s->rest < p.end &&
@@ -188,7 +189,7 @@ static int say_statement(struct asked *q)
 		is_ours |= is_class(t, p.begin, CLOSED_PRONOUN);
 	}
 	s.of = p;
-	if (!is_asked || !find_verb(&s, t, is_ours, tags != 0))
+	if (!is_asked || !find_verb(&s, t, is_ours, tags))
 		return 0;
 	for (int i = p.begin; i < p.end; i++)
 		if (tokens_class(t, i) >= 0 && other >> tokens_class(t, i) & 1 &&

@@ -209,6 +209,8 @@ static int filler_length(const struct tokens *t, int i)
 
 	if (tokens_class(t, i) == CLOSED_AUXILIARY && tokens_is(t, i + 1, "you") && tokens_is(t, i + 2, say))
 		return 3 + (!i && tokens_is(t, 3, "that"));
+	if (!i && tokens_is(t, 0, "let") && tokens_is(t, 1, "'s"))
+		return 2;
 	if (!i && tokens_is(t, 0, "is") && tokens_is(t, 1, "it") &&
 		tokens_is(t, 2, "true|right|correct|so") && tokens_is(t, 3, "that"))
 		return 4;
