@@ -217,10 +217,8 @@ static int name_views(struct reading *r, const cJSON *images, struct coco *c, st
 		const char *file;
 		snprintf(r->where, WHERE, "%s: image %zu", r->path, c->n);
 		if (json_string(image, "file_name", 1, &file, r->where, e) < 0 ||
-			!(c->files[c->n++] = mem_strdup(file, e)))
+			!(c->files[c->n++] = view_image(file, e)))
 			return -1;
-		for (char *p = c->files[c->n - 1]; *p; p++)
-			*p = *p == '\\' ? '/' : *p;
 		if (!*view_base(c->files[c->n - 1]))
 			return err_file(e, r->where, "key 'file_name' has no name: '%.200s'", file);
 	}

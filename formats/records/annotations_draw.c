@@ -19,8 +19,7 @@ static const double edge_share = 0.02;
 /* A picture's name as a view: without folders of either kind of slash, and without the ending. */
 static char *reading_view(const struct reading *r, const char *image, struct err *e)
 {
-	const char *base = strrchr(image, '\\');
-	SCOPED char *stem = mem_strdup(view_base(base ? base + 1 : image), e);
+	SCOPED char *path = view_image(image, e), *stem = path ? mem_strdup(view_base(path), e) : NULL;
 
 	if (!stem)
 		return NULL;
