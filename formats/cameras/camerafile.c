@@ -32,6 +32,9 @@ static int read_view(struct camera *c, const cJSON *item, const char *where, str
 		return err_file(e, where, "size %gx%g is not whole numbers in 1 to 65536", width, height);
 	c->cx = width / 2;
 	c->cy = height / 2;
+	if (json_number(item, "cx", 0, &c->cx, where, e) < 0 ||
+		json_number(item, "cy", 0, &c->cy, where, e) < 0)
+		return -1;
 	/* The file has camera to world. */
 	for (int r = 0; r < 3; r++)
 		for (int k = 0; k < 3; k++)

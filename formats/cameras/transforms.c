@@ -51,12 +51,21 @@ static int check_coefficients(int is_full, const double *k, const char *where, s
 static int read_distortion(struct lens *l, const cJSON *frame, const cJSON *root, int is_fisheye, int is_full,
 	const char *where, struct err *e)
 {
-	static const char *const keys[] = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"};
+	static const char *const keys[] = {"k1", "k2", "k3", "k4", "k5", "k6", "p1", "p2"},
+				 list[] = "distortion_params";
 	double k[8], *to = l->parameters + 4;
 
 	for (int i = 0; i < 8; i++)
 		if (read_coefficient(frame, root, keys[i], &k[i], where, e))
 			return -1;
+	const cJSON *own = json_member(frame, list) ? frame : root;
+	if (json_member(own, list)) { /* nerfstudio's: k1 to k4, p1, p2 */
+		double all[6];
+		if (json_matrix(own, list, 6, 0, all, where, e))
+			return -1;
+		memcpy(k, all, 4 * sizeof *k);
+		memcpy(k + 6, all + 4, 2 * sizeof *k);
+	}
 	if (is_fisheye) {
 		memcpy(to, k, 4 * sizeof *k);
 		l->model = lens_model_numbered(OPENCV_FISHEYE);
@@ -223,8 +232,9 @@ static int read_splits(struct cameras *c, size_t first, const cJSON *root, const
 /* What frames may leave to the file, without copies: each frame looks these up. */
 static cJSON *common_members(const cJSON *root, const char *path, struct err *e)
 {
-	static const char *const keys[] = {"camera_model", "is_fisheye", "k1", "k2", "k3", "k4", "k5", "k6",
-		"p1", "p2", "w", "h", "fl_x", "fl_y", "camera_angle_x", "camera_angle_y", "cx", "cy"};
+	static const char *const keys[] = {"camera_model", "is_fisheye", "distortion_params", "k1", "k2",
+		"k3", "k4", "k5", "k6", "p1", "p2", "w", "h", "fl_x", "fl_y", "camera_angle_x",
+		"camera_angle_y", "cx", "cy"};
 	cJSON *common = cJSON_CreateObject();
 	int is_whole = common != NULL;
 

@@ -24,7 +24,7 @@ struct source {
 	const struct plyfile_element *vertex;
 	struct layout layout;
 	int is_packed;
-	double range[2][2]; /* of opacities, and of all scales, as they are written */
+	double range[3][2]; /* of opacities, of all scales, and of all colours, as they are written */
 	size_t small;	    /* scales below a half */
 	struct plypacked packed;
 	double *row; /* in the file's order; unused where packed */
@@ -67,7 +67,7 @@ static int open_source(struct source *in, struct plyfile *f, const struct plyfil
 	*in = (struct source){.file = f,
 		.vertex = vertex,
 		.is_packed = plypacked_is(f),
-		.range = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
+		.range = {{INFINITY, -INFINITY}, {INFINITY, -INFINITY}, {INFINITY, -INFINITY}}};
 	if (in->is_packed) {
 		if (plypacked_open(&in->packed, f, vertex, chunks, e))
 			return -1;
@@ -142,20 +142,20 @@ static void close_source(struct source *in)
 
 static void note_range(struct source *in, const double *values)
 {
-	for (int k = ROW_OPACITY; k < ROW_ROT; k++) {
-		double *range = in->range[k != ROW_OPACITY];
+	for (int k = ROW_DC; k < ROW_ROT; k++) {
+		double *range = in->range[k < ROW_OPACITY ? 2 : k != ROW_OPACITY];
 		range[0] = fmin(range[0], values[k]);
 		range[1] = fmax(range[1], values[k]);
-		in->small += k != ROW_OPACITY && values[k] < 0.5;
+		in->small += k > ROW_OPACITY && values[k] < 0.5;
 	}
 }
 
-/* Opacities and scales as they are, which no training gives in place of logits and logarithms: those have
- * values below 0 or, where the unit is small, few below a half. */
+/* Opacities, scales and colours as they are, which no training gives in place of logits, logarithms and
+ * harmonics: those have values below 0 or, where the unit is small, few below a half. */
 static int check_range(const struct source *in, struct err *e)
 {
 	const size_t n = in->vertex->rows < 4 ? 0 : in->vertex->rows; /* fewer may have any values */
-	const double low = in->range[0][0], high = in->range[0][1];
+	const double low = in->range[0][0], high = in->range[0][1], *colour = in->range[2];
 
 	if (n && low >= 0 && low < high && (high <= 1 || (high > 50 && high <= 255)))
 		return err_file(e, in->file->path,
@@ -164,6 +164,11 @@ static int check_range(const struct source *in, struct err *e)
 	if (n && in->range[1][0] > 0 && in->range[1][0] < in->range[1][1] && 2 * in->small > 3 * n)
 		return err_file(e, in->file->path,
 			"all its scales are above 0, most below 0.5: not logarithms of sizes, which 3DGS stores");
+	if (n >= 1000 && colour[0] >= 0 && colour[0] < colour[1] &&
+		(colour[1] <= 1 || (colour[1] > 50 && colour[1] <= 255)))
+		return err_file(e, in->file->path,
+			"all its f_dc are from %g to %g: colours, not harmonics, which 3DGS stores, (c - 0.5) / 0.28209 of c from 0 to 1",
+			colour[0], colour[1]);
 	return 0;
 }
 

@@ -21,13 +21,13 @@ refused() {
 	says 3 "gs-import: cameras.json: camera 1: $reason" import && [ ! -e scene ]
 }
 
-@test "camera-to-world rotation and position become world to camera; the principal point is the centre" {
-	printf '[%s,%s]' "$(camera3dgs)" "$(camera3dgs 'img_name="a.v2.JPG"' width=41)" >cameras.json
+@test "camera-to-world rotation and position become world to camera; the principal point is the file's, else the centre" {
+	printf '[%s,%s]' "$(camera3dgs cy=14)" "$(camera3dgs 'img_name="a.v2.JPG"' width=41)" >cameras.json
 	import
 	imported name width height fx fy cx cy split >out
 	diff - out <<-'END'
 		["a.v2",41,30,50,51,20.5,15,"train"]
-		["b",40,30,50,51,20,15,"train"]
+		["b",40,30,50,51,20,14,"train"]
 	END
 	# R^T, and -R^T (1,2,3).
 	[ "$(jq -c .[1].world_to_camera scene/cameras.json)" = "[[0,1,0,-2],[0,0,1,-3],[1,0,0,-1],[0,0,0,1]]" ]

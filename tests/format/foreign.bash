@@ -31,19 +31,19 @@ colmap() {
 
 # camera3dgs [KEY=VALUE]...: an entry of a 3DGS cameras.json; VALUE is JSON, an empty one leaves the key out.
 camera3dgs() {
-	entry 'id img_name width height position rotation fy fx time' id=0 'img_name="b"' width=40 height=30 'position=[1,2,3]' \
+	entry 'id img_name width height position rotation fy fx cx cy time' id=0 'img_name="b"' width=40 height=30 'position=[1,2,3]' \
 		'rotation=[[0,0,1],[1,0,0],[0,1,0]]' fy=51 fx=50 "$@"
 }
 
 # frame [KEY=VALUE]...: a frame of a transforms.json.
 frame() {
-	entry 'file_path transform_matrix w h fl_x fl_y cx cy camera_angle_x camera_angle_y camera_model is_fisheye k1 k2 k3 k4 p1 p2 time' \
+	entry 'file_path transform_matrix w h fl_x fl_y cx cy camera_angle_x camera_angle_y camera_model is_fisheye distortion_params k1 k2 k3 k4 p1 p2 time' \
 		'file_path="images/b.png"' 'transform_matrix=[[1,0,0,1],[0,1,0,2],[0,0,1,3],[0,0,0,1]]' "$@"
 }
 
 # transforms [KEY=VALUE]...: a transforms.json, by default of one frame.
 transforms() {
-	entry 'w h fl_x fl_y cx cy camera_angle_x camera_angle_y camera_model is_fisheye k1 k2 k3 k4 k5 k6 p1 p2
+	entry 'w h fl_x fl_y cx cy camera_angle_x camera_angle_y camera_model is_fisheye distortion_params k1 k2 k3 k4 k5 k6 p1 p2
 		train_filenames val_filenames test_filenames frames' w=40 h=30 fl_x=50 fl_y=51 cx=19 cy=14 "frames=[$(frame)]" "$@"
 }
 

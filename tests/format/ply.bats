@@ -117,13 +117,17 @@ header() {
 	refused "element 'vertex', row 0: no number at offset $(($(ply_header 1 | wc -c) + 31))"
 }
 
-@test "opacities that are no logits, and scales that are no logarithms" {
+@test "opacities that are no logits, scales that are no logarithms, colours that are no harmonics" {
 	splats_ply s.ply '0 0 2 1 0.5 0 0 -3 -3 -3 1 0 0 0' '0 0 2 1 0.5 0 0.25 -3 -3 -3 1 0 0 0' '0 0 2 1 0.5 0 0.5 -3 -3 -3 1 0 0 0' '0 0 2 1 0.5 0 1 -3 -3 -3 1 0 0 0'
 	refused "all its opacities are from 0 to 1: not logits, which 3DGS stores, log(o / (1 - o)) of o from 0 to 1"
 	sed 's/0.5 0 1 -3/0.5 0 255 -3/' s.ply >t && mv t s.ply
 	refused "all its opacities are from 0 to 255: not logits, which 3DGS stores, log(o / (1 - o)) of o from 0 to 1"
 	sed 's/0 255 -3 -3 -3/0 -2 0.2 0.1 0.1/; s/-3 -3 -3/0.1 0.01 0.2/' s.ply >t && mv t s.ply
 	refused "all its scales are above 0, most below 0.5: not logarithms of sizes, which 3DGS stores"
+	for most in 1 255; do
+		{ ply_header 1000; for ((i = 0; i < 1000; i++)); do echo 0 0 2 0.5 $((i % 2 * most)) 0.25 $((i % 7 - 3)) -3 -3 -3 1 0 0 0; done; } >s.ply
+		refused "all its f_dc are from 0 to $most: colours, not harmonics, which 3DGS stores, (c - 0.5) / 0.28209 of c from 0 to 1"
+	done
 }
 
 @test "lists of impossible lengths" {

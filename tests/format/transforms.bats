@@ -150,6 +150,10 @@ lens() {
 	[ "$(undistorted)" = '["FULL_OPENCV",40,30,50,51,19,14,0.5,0,0,0,0,0.25,0.125,0.0625]' ]
 	transforms 'camera_model="OPENCV_FISHEYE"' k1=0.5 k2=0.25 k3=0.125 k4=0.0625 >transforms.json
 	[ "$(undistorted)" = '["OPENCV_FISHEYE",40,30,50,51,19,14,0.5,0.25,0.125,0.0625]' ]
+	transforms distortion_params='[0.5,0.25,0,0,0.125,0.0625]' k1=9 >transforms.json
+	[ "$(undistorted)" = '["OPENCV",40,30,50,51,19,14,0.5,0.25,0.125,0.0625]' ]
+	transforms "frames=[$(frame distortion_params='[0,0,0.25,0,0,0]')]" >transforms.json
+	[ "$(undistorted)" = '["FULL_OPENCV",40,30,50,51,19,14,0,0,0,0,0.25,0,0,0]' ]
 	transforms 'camera_model="Opencv_fisheye"' k1=0.5 >transforms.json
 	[ "$(undistorted)" = '["OPENCV_FISHEYE",40,30,50,51,19,14,0.5,0,0,0]' ]
 	transforms "frames=[$(frame is_fisheye=true)]" k1=0.5 >transforms.json
