@@ -148,8 +148,6 @@ static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 	int bad = jsonl_records(
 		j, sizeof *s->items, read_one, sentence_free, (void **)&s->items, &s->n, &lines, e);
 
-	if (!bad && !s->n)
-		bad = err_file(e, j->path, "holds no sentences");
 	return bad || jsonl_check_refs(
 			      j, s->items, sizeof *s->items, offsetof(struct sentence, ref), s->n, lines, e)
 		       ? -1
@@ -172,40 +170,77 @@ static int is_of_table(const char *line)
 	return strchr(line, '\t') != NULL;
 }
 
-/* A line without the number before it: "12. ", "12) ", or "12" and a tab. */
-static char *skip_number(char *line)
+/* Whether a line may be a row of a table, in which no blank is after a comma, or bars are between cells. */
+static int has_cells(const char *line)
 {
-	char *end = line + strspn(line, "0123456789");
-	const int is_marked = *end == '.' || *end == ')';
-	const size_t blanks = strspn(end + is_marked, " \t");
+	for (; *line; line++)
+		if (*line == '|' || (strchr(",;", *line) && line[1] && !strchr(" \t0123456789", line[1])))
+			return 1;
+	return 0;
+}
 
-	return end > line && blanks && (is_marked || *end == '\t') ? end + is_marked + blanks : line;
+/* A line's sentence, cut in place: without a list's mark or number before it ("- ", "12. ", "12) ", "12: ",
+ * or "12" and a tab), and without quotes around it. NULL of a comment. */
+static char *bare_line(char *line)
+{
+	static const char *const marks[] = {"- ", "* ", "\xe2\x80\xa2 "};
+	char *quote;
+
+	line += strspn(line, " ");
+	if (*line == '#' && strchr("# \t", line[1]))
+		return NULL;
+	for (size_t i = 0; i < sizeof marks / sizeof *marks; i++)
+		line += strncmp(line, marks[i], strlen(marks[i])) ? 0 : strlen(marks[i]);
+	char *end = line + strspn(line, "0123456789");
+	const int is_marked = *end && strchr(".):", *end);
+	const size_t blanks = strspn(end + is_marked, " \t");
+	if (end > line && blanks && (is_marked || *end == '\t'))
+		line = end + is_marked + blanks;
+	if (*line == '"' && (quote = strchr(line + 1, '"')) && !quote[1]) {
+		*quote = 0;
+		line++;
+	}
+	return line;
+}
+
+static int read_line(struct sentences *s, size_t *capacity, const struct jsonl *j, char *line, struct err *e)
+{
+	const size_t len = strlen(line), bad = utf8_check(line, len);
+	char ref[24], fault[NAME_FAULT];
+
+	if (is_of_table(line))
+		return err_file(e, j->path, "a table: write a sentence on each line, or JSON Lines");
+	if (bad < len)
+		return jsonl_err(j, e, "not UTF-8 at byte %zu: save the file as UTF-8",
+			(size_t)(line - j->line) + bad + 1);
+	utf8_plain(line);
+	const char *reason = name_fault(line, NAME_DATA, fault);
+	if (reason)
+		return jsonl_err(j, e, "a sentence that %s: is the file text?", reason);
+	snprintf(ref, sizeof ref, "%ld", j->line_number);
+	if (mem_grow((void **)&s->items, capacity, s->n + 1, sizeof *s->items, j->path, e))
+		return -1;
+	struct sentence *one = &s->items[s->n++];
+	*one = (struct sentence){.split = SPLIT_TEST, .ref = mem_strdup(ref, e)};
+	return one->ref && (one->object = mem_strdup("?", e)) && (one->text = mem_strdup(line, e)) ? 0 : -1;
 }
 
 static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)
 {
-	size_t capacity = 0;
-	char ref[24];
+	static const char *const kinds[] = {".csv", ".tsv", ".yaml", ".yml", ".html", ".rtf", ".docx"};
+	size_t capacity = 0, rows = 0, kind = 0;
 	int got;
 
 	while ((got = jsonl_text(j, e)) > 0) {
-		char *line = skip_number(j->line);
-		if (is_of_table(line))
-			return err_file(e, j->path, "a table: write a sentence on each line, or JSON Lines");
-		if (mem_grow((void **)&s->items, &capacity, s->n + 1, sizeof *s->items, j->path, e))
-			return -1;
-		struct sentence *one = &s->items[s->n++];
-		*one = (struct sentence){.split = SPLIT_TEST};
-		const size_t len = strlen(line), bad = utf8_check(line, len);
-		if (bad < len)
-			return jsonl_err(j, e, "not UTF-8 at byte %zu: save the file as UTF-8",
-				(size_t)(line - j->line) + bad + 1);
-		utf8_plain(line);
-		snprintf(ref, sizeof ref, "%ld", j->line_number);
-		if (!(one->ref = mem_strdup(ref, e)) || !(one->object = mem_strdup("?", e)) ||
-			!(one->text = mem_strdup(line, e)))
+		char *line = bare_line(j->line);
+		rows += line && has_cells(line);
+		if (line && read_line(s, &capacity, j, line, e))
 			return -1;
 	}
+	while (kind < sizeof kinds / sizeof *kinds && !path_ends(j->path, kinds[kind]))
+		kind++;
+	if (!got && (kind < sizeof kinds / sizeof *kinds || (rows > 1 && rows == s->n)))
+		return err_file(e, j->path, "a table: write a sentence on each line, or JSON Lines");
 	return got;
 }
 
@@ -214,7 +249,7 @@ static int is_json(struct jsonl *j, struct err *e)
 {
 	const int got = jsonl_peek(j, e);
 
-	return got < 0 ? -1 : !got || strchr("{[\"", j->line[strspn(j->line, " \t")]);
+	return got < 0 ? -1 : !got || strchr("{[", j->line[strspn(j->line, " \t")]);
 }
 
 static int read_file(struct sentences *s, const char *path, int is_any, struct err *e)
@@ -226,8 +261,8 @@ static int read_file(struct sentences *s, const char *path, int is_any, struct e
 		return -1;
 	const int json = is_any ? is_json(&j, e) : 1;
 	int bad = json < 0 ? -1 : json ? read_all(s, &j, e) : read_plain(s, &j, e);
-	if (!json && !bad && (path_ends(path, ".csv") || path_ends(path, ".tsv")))
-		bad = err_file(e, path, "a table: write a sentence on each line, or JSON Lines");
+	if (!bad && !s->n)
+		bad = err_file(e, j.path, "holds no sentences");
 	return bad;
 }
 

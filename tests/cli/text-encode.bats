@@ -194,19 +194,29 @@ Try 'text-encode --help'." env -u XDG_CACHE_HOME -u HOME "$BIN/text-encode" -o t
 	printf '\xef\xbd\x94he\xe2\x80\x89red\xe3\x80\x80cup\n\n\nthe\xc2\xa0b\xc2\xadig \xe2\x80\x8bmug\ntasse à cafe\xcc\x81' | encode - | cmp - text
 	printf '1. the red cup\r\r\r4)\tthe big mug\r7\ttasse à café' | encode - >numbers # of old programs, numbered
 	[ "$(header numbers | jq -c '.__metadata__.texts | fromjson')" = '["the red cup","the big mug","tasse à café"]' ]
+	printf '# mine\n- the red cup\n"the big mug"\n\xe2\x80\xa2 3: tasse à café\n##\n' | encode - >marks
+	[ "$(header marks | jq -c '.__metadata__ | [.texts, .refs] | map(fromjson)')" = '[["the red cup","the big mug","tasse à café"],["2","3","4"]]' ]
+	printf '# mine\n' >none.txt
+	says 3 'text-encode: none.txt: holds no sentences' "$BIN/text-encode" --model model -o none none.txt
+	printf 'PK\3' >zip
+	says 3 'text-encode: zip:1: a sentence that has a control character at byte 3: is the file text?' "$BIN/text-encode" --model model -o none zip
 	printf 'cup\ncaf\xe9\n' >latin
 	says 3 'text-encode: latin:2: not UTF-8 at byte 4: save the file as UTF-8' "$BIN/text-encode" --model model -o none latin
 	printf 'cup\nc\0p\n' >nul
 	says 3 'text-encode: nul:2: a NUL byte at column 2' "$BIN/text-encode" --model model -o none nul
+	printf 'the cup, on the left\nthe mug,red\n' | encode - >commas
 	printf 'object,text\ncup,the red cup\n' >table.csv
 	printf '1\tcup\tthe red cup\n' >table
 	printf 'object;"text"\ncup;the red cup\n' >table.txt
-	for file in table.csv table table.txt; do
+	printf '1,cup,the red cup\n2,"mug","the mug"\n' >rows
+	printf 'cup | the red cup\nmug|the mug\n' >bars
+	printf "text: the red cup\n" >x.yml
+	for file in table.csv table table.txt rows bars x.yml; do
 		says 3 "text-encode: $file: a table: write a sentence on each line, or JSON Lines" "$BIN/text-encode" --model model -o none $file
 	done
 	says 3 'text-parse: latin: text, not safetensors: of sentences text-encode makes them' "$BIN/text-parse" -o none latin
 	# what begins as JSON may is JSON
-	for first in '[' ' {' '"cup"' $'\xef\xbb\xbf{'; do
+	for first in '[' ' {' $'\xef\xbb\xbf{'; do
 		echo "$first" >odd
 		not "$BIN/text-encode" --model model -o none odd 2>err
 		grep -qE '^text-encode: odd:1: not (JSON|a JSON object)' err
