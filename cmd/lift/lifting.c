@@ -277,7 +277,7 @@ int lifting_read(struct lifting *l, const struct lifting_files *files, const str
 	find_objects(l, to);
 	if (l->own && !l->objects)
 		return err_set(e, ERR_FORMAT,
-			"%s: no mask of a training view is of a training sentence's object of %s: names are compared letter by letter",
+			"%s: no mask of a training view is of a training sentence's object of %s",
 			file_name(files->masks), file_name(files->text));
 	return find_spare(l, e);
 }

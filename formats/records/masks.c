@@ -273,18 +273,25 @@ static int find_view(
 int masks_check_refs(const struct masks *set, const char *path, char *const *refs, char *const *objects,
 	size_t sentences, struct err *e)
 {
-	SCOPED_BY(names_free) struct names names = {0};
-	int bad = names_make(&names, refs, sizeof *refs, 0, sentences, e);
+	SCOPED_BY(names_free) struct names names = {0}, called = {0};
+	SCOPED const char **all = mem_alloc(sentences + set->n, sizeof *all, "names", e);
+	int bad = !all || names_make(&names, refs, sizeof *refs, 0, sentences, e);
 
+	for (size_t i = 0; i < sentences && all; i++)
+		all[i] = objects[i];
 	for (size_t i = 0; i < set->n && !bad; i++) {
 		const struct mask *m = &set->items[i];
+		all[sentences + i] = m->object;
 		const size_t at = m->ref ? names_find(&names, m->ref) : NAMES_NONE;
 		if (at != NAMES_NONE && m->object && *objects[at] && strcmp(m->object, objects[at]))
 			bad = err_file(e, file_name(path),
 				"a mask of view '%s' is of object '%s', but its ref '%s' is a sentence of '%s': leave out the key that is wrong",
 				m->view, m->object, m->ref, objects[at]);
 	}
-	return bad ? -1 : 0;
+	return bad || names_make(&called, all, sizeof *all, 0, sentences + set->n, e) ||
+			       names_check_spelling(&called, file_name(path), e)
+		       ? -1
+		       : 0;
 }
 
 /* Leaves out the masks of views that the scene lacks: COLMAP may have left photographs out. Of all masks it

@@ -32,7 +32,8 @@ int masks_check_shape(const struct mask *m, const char *of, int height, int widt
 	long line, struct err *e);
 
 /* 0 where none of the records of a file is of a sentence (its ref) and says another object than that
- * (objects; "" says nothing), else ERR_FORMAT: which of them is wrong no tool can know. */
+ * (objects; "" says nothing), and no object is spelt in two ways (names_check_spelling), else ERR_FORMAT:
+ * which of them is wrong no tool can know. */
 int masks_check_refs(const struct masks *set, const char *path, char *const *refs, char *const *objects,
 	size_t sentences, struct err *e);
 

@@ -3,6 +3,7 @@
 #include "base/mem.h"
 #include "base/name.h"
 
+#include <ctype.h>
 #include <stdio.h>
 
 static int by_name(const void *a, const void *b)
@@ -97,6 +98,32 @@ size_t names_count(const struct names *names)
 	for (size_t i = 1; i < names->n; i++)
 		count += strcmp(names->sorted[i - 1].name, names->sorted[i].name) != 0;
 	return count;
+}
+
+/* By letters in either case, with '_' and '-' as blanks. */
+static int by_spelling(const void *a, const void *b)
+{
+	const char *x = ((const struct names_place *)a)->name, *y = ((const struct names_place *)b)->name;
+	int order = 0;
+
+	for (; !order && (*x || *y); x++, y++)
+		order = (strchr("_-", *x) && *x ? ' ' : tolower((unsigned char)*x)) -
+			(strchr("_-", *y) && *y ? ' ' : tolower((unsigned char)*y));
+	return order;
+}
+
+int names_check_spelling(struct names *names, const char *path, struct err *e)
+{
+	if (names->n)
+		qsort(names->sorted, names->n, sizeof *names->sorted, by_spelling);
+	for (size_t i = 1; i < names->n; i++) {
+		const char *x = names->sorted[i - 1].name, *y = names->sorted[i].name;
+		if (!by_spelling(&names->sorted[i - 1], &names->sorted[i]) && strcmp(x, y) != 0)
+			return err_file(e, path,
+				"'%.80s' and '%.80s' are one name in two spellings, and would be two things: write them alike, in masks and sentences",
+				strcmp(x, y) < 0 ? x : y, strcmp(x, y) < 0 ? y : x);
+	}
+	return 0;
 }
 
 const char *names_few(const struct names *names, char few[NAMES_FEW])

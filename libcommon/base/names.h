@@ -37,6 +37,10 @@ int names_find_twice(const void *items, size_t stride, size_t offset, size_t n, 
 /* How many different names there are. */
 size_t names_count(const struct names *names);
 
+/* Refuses names that differ in the case of letters, or in '_', '-' and blanks, alone: 0, or -1 with *e
+ * (ERR_FORMAT). The names are then out of order. */
+int names_check_spelling(struct names *names, const char *path, struct err *e);
+
 /* For a message on a name that is not there, "; there are 26: a, b, c ... z": how many there are, and some.
  * Returns few. */
 enum { NAMES_FEW = 400 };
