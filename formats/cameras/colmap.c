@@ -136,7 +136,7 @@ static int check_end(const struct cursor *in, struct err *e)
 		e, in->path, "%zu bytes after the last entry, from offset %zu", in->map.len - in->at, in->at);
 }
 
-static int read_camera_entries(struct colmap_entries *all, struct cursor *in, const char *path, struct err *e)
+static int read_cameras_binary(struct colmap_entries *all, struct cursor *in, const char *path, struct err *e)
 {
 	uint64_t count = 0;
 
@@ -166,7 +166,7 @@ static int read_camera_entries(struct colmap_entries *all, struct cursor *in, co
 	return check_end(in, e);
 }
 
-static int read_image_entries(struct cameras *c, const struct colmap_entries *all, struct cursor *in,
+static int read_images_binary(struct cameras *c, const struct colmap_entries *all, struct cursor *in,
 	const char *path, struct err *e)
 {
 	uint64_t count = 0;
@@ -194,25 +194,6 @@ static int read_image_entries(struct cameras *c, const struct colmap_entries *al
 			return -1;
 	}
 	return check_end(in, e);
-}
-
-static int read_cameras_binary(struct colmap_entries *all, const char *path, struct err *e)
-{
-	struct cursor in = {0};
-	const int bad = read_camera_entries(all, &in, path, e);
-
-	file_unmap(&in.map);
-	return bad;
-}
-
-static int read_images_binary(
-	struct cameras *c, const struct colmap_entries *all, const char *path, struct err *e)
-{
-	struct cursor in = {0};
-	const int bad = read_image_entries(c, all, &in, path, e);
-
-	file_unmap(&in.map);
-	return bad;
 }
 
 /* A part of a model in one form, whatever the case of its letters: its path, or NULL where it is not there or
@@ -260,19 +241,22 @@ int colmap_is_model(const char *dir)
 int colmap_read(struct cameras *c, const char *dir, struct err *e)
 {
 	struct colmap_entries all = {0};
+	struct cursor in[2] = {{0}};
 	char *parts[2];
 
 	*c = (struct cameras){0};
 	if (find_parts(dir, parts, e))
 		return err_file(e, dir, "no COLMAP model: no cameras and images, .bin or .txt");
-	const int bad = (path_ends(parts[0], ".bin") ? read_cameras_binary : colmap_read_cameras_text)(
-				&all, parts[0], e) ||
-			sort_entries(&all, parts[0], e) ||
-			(path_ends(parts[1], ".bin") ? read_images_binary : colmap_read_images_text)(
-				c, &all, parts[1], e) ||
-			views_finish(c, parts[1], e);
+	int bad = path_ends(parts[0], ".bin") ? read_cameras_binary(&all, &in[0], parts[0], e)
+					      : colmap_read_cameras_text(&all, parts[0], e);
+	bad = bad || sort_entries(&all, parts[0], e) ||
+	      (path_ends(parts[1], ".bin") ? read_images_binary(c, &all, &in[1], parts[1], e)
+					   : colmap_read_images_text(c, &all, parts[1], e)) ||
+	      views_finish(c, parts[1], e);
 	if (bad)
 		cameras_free(c);
+	file_unmap(&in[0].map);
+	file_unmap(&in[1].map);
 	mem_free_all(all.items, parts[0], parts[1]);
 	return bad ? -1 : 0;
 }

@@ -6,8 +6,6 @@
 #include "formats/records/json.h"
 #include "formats/records/jsonl.h"
 
-#include <strings.h>
-
 static void sentence_free(void *record)
 {
 	const struct sentence *s = record;
@@ -154,25 +152,14 @@ static int read_all(struct sentences *s, struct jsonl *j, struct err *e)
 		       : 0;
 }
 
-/* Whether a line is of a table: it has a tab, or is a head with a name for the sentences. */
-static int is_of_table(const char *line)
-{
-	static const char *const heads[] = {"text", "sentence"};
-	const int is_many = line[strcspn(line, ",;")] != 0;
-
-	for (const char *at = line; is_many && *at; at += strcspn(at, ",;"), at += *at != 0)
-		for (size_t i = 0; i < sizeof heads / sizeof *heads; i++) {
-			const char *word = at + (*at == '"');
-			const size_t n = strlen(heads[i]);
-			if (!strncasecmp(word, heads[i], n) && strchr(",;\"", word[n]))
-				return 1;
-		}
-	return strchr(line, '\t') != NULL;
-}
-
-/* Whether a line may be a row of a table, in which no blank is after a comma, or bars are between cells. */
+/* Whether a line may be a row of a table: a number and a comma, no blank after a comma, or bars between
+ * cells. */
 static int has_cells(const char *line)
 {
+	const size_t digits = strspn(line, "0123456789");
+
+	if (digits && line[digits] && strchr(",;", line[digits]))
+		return 1;
 	for (; *line; line++)
 		if (*line == '|' || (strchr(",;", *line) && line[1] && !strchr(" \t0123456789", line[1])))
 			return 1;
@@ -208,7 +195,7 @@ static int read_line(struct sentences *s, size_t *capacity, const struct jsonl *
 	const size_t len = strlen(line), bad = utf8_check(line, len);
 	char ref[24], fault[NAME_FAULT];
 
-	if (is_of_table(line))
+	if (strchr(line, '\t'))
 		return err_file(e, j->path, "a table: write a sentence on each line, or JSON Lines");
 	if (bad < len)
 		return jsonl_err(j, e, "not UTF-8 at byte %zu: save the file as UTF-8",
@@ -239,7 +226,7 @@ static int read_plain(struct sentences *s, struct jsonl *j, struct err *e)
 	}
 	while (kind < sizeof kinds / sizeof *kinds && !path_ends(j->path, kinds[kind]))
 		kind++;
-	if (!got && (kind < sizeof kinds / sizeof *kinds || (rows > 1 && rows == s->n)))
+	if (!got && (kind < sizeof kinds / sizeof *kinds || (rows > 1 && rows + 1 >= s->n)))
 		return err_file(e, j->path, "a table: write a sentence on each line, or JSON Lines");
 	return got;
 }
