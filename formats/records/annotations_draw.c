@@ -73,7 +73,7 @@ void reading_group(struct reading *r, const cJSON *item)
 		found = json_get(item, keys[i]);
 		found = found ? found : json_get(json_get(item, "attributes"), keys[i]);
 	}
-	r->group = cJSON_IsNumber(found) ? found->valuedouble : NAN;
+	r->group = found && cJSON_IsNumber(found) ? found->valuedouble : NAN;
 }
 
 /* The annotation that a person's shape of this name goes on with; NULL where there is none. */
