@@ -70,9 +70,8 @@ static int parse_all(
 			!t.pieces   ? "has no word pieces"
 			: !t.middle ? "has no tensor 'middle'"
 				    : "of another encoder than the parser's weights");
-	if (file_out_open(&out, c->output, e))
-		return -1;
-	return file_out_end(&out, put_parses(&parser, &t, out.stream, e), e);
+	return file_out_end(
+		&out, file_out_open(&out, c->output, e) || put_parses(&parser, &t, out.stream, e), e);
 }
 
 static int run(const struct cli *c, const struct report *to, struct err *e)

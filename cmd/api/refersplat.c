@@ -161,28 +161,19 @@ static const struct camera *find_view(struct refersplat *r, const char *name)
 	return view;
 }
 
-static int print_parse(char **line, const struct text *t, const struct parse *p, struct err *e)
-{
-	size_t length;
-	FILE *out = open_memstream(line, &length);
-
-	if (!out)
-		return err_errno(e, "parse");
-	const int bad = parses_put(out, t->refs[0], t->texts[0], p, e);
-	if (fclose(out))
-		return err_errno(e, "parse");
-	return bad;
-}
-
 static int parse_text(char **line, const struct asking *a, const struct text *t, struct err *e)
 {
 	const struct parser_vectors v = {
 		t->pieces ? t->pieces[0] : NULL, t->middle, (int)t->offsets[1], t->width};
 	SCOPED_BY(parse_free) struct parse p = {0};
+	size_t length;
 
 	if (parse_sentence(&p, &a->parser, t->texts[0], &v, e))
 		return -1;
-	return print_parse(line, t, &p, e);
+	FILE *out = open_memstream(line, &length);
+	const int bad = out && parses_put(out, t->refs[0], t->texts[0], &p, e);
+	*line = mem_text_end(out, line, bad, "parse", e);
+	return *line ? 0 : -1;
 }
 
 int refersplat_parse(struct refersplat *r, const char *sentence, const char **json)

@@ -31,7 +31,7 @@ static int check_fit(const struct asking *a, const struct anymodel *m, const cha
 	const struct run_folder *f = &a->files;
 	const struct lifted *l = &m->lifted;
 
-	if (anymodel_check_scene(m, model, &a->scene, f->scene, e))
+	if (anymodel_check_scene(m, model, &a->scene, e))
 		return -1;
 	if (l->width != encoder_width(&a->encoder))
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, the encoder %s makes %d",

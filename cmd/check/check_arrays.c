@@ -213,11 +213,9 @@ int check_npz(struct check *c, const char *path, struct err *e)
 	if (npz_open(&z, path, e))
 		return -1;
 	for (size_t i = 0; i < z.zip.n && !bad; i++) {
-		struct npy a;
-		if (!(bad = npz_entry(&z, i, &a, NULL, e))) {
-			values += (long long)a.count;
-			npy_close(&a);
-		}
+		SCOPED_BY(npy_close) struct npy a = {0};
+		bad = npz_entry(&z, i, &a, NULL, e);
+		values += (long long)a.count;
 	}
 	c->kind = "npz";
 	check_add(c, "arrays", (long long)z.zip.n);

@@ -34,7 +34,8 @@ struct feature_maps {
 	enum feature_maps_kind kind;
 	char *is_there;	 /* (views) the view has files of this kind, or masks */
 	size_t channels; /* 0: labels */
-	struct npz *npz; /* of all views; NULL: there is a folder */
+	int is_npz;	 /* one file of all views; else there is a folder */
+	struct npz npz;
 	/* of masks */
 	struct masks set;
 	struct mask_index index;

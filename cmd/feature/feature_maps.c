@@ -12,8 +12,8 @@ static int has_file(
 {
 	char name[16];
 
-	if (m->npz)
-		return strcmp(ending, ".npy") ? 0 : npz_has(m->npz, view, suffix, e);
+	if (m->is_npz)
+		return strcmp(ending, ".npy") ? 0 : npz_has(&m->npz, view, suffix, e);
 	snprintf(name, sizeof name, "%s%s", suffix, ending);
 	SCOPED char *path = file_join(m->options->folder, view, name, e);
 	return path ? file_exists(path) : -1;
@@ -39,24 +39,12 @@ static int find_kind(
 	return 0;
 }
 
-static int open_npz(struct feature_maps *m, struct err *e)
-{
-	if (!path_ends(m->options->folder, ".npz") || file_is_dir(m->options->folder))
-		return 0;
-	m->npz = mem_alloc(1, sizeof *m->npz, "arrays", e);
-	if (m->npz && !npz_open(m->npz, m->options->folder, e))
-		return 0;
-	free(m->npz);
-	m->npz = NULL;
-	return -1;
-}
-
 /* What is said where no training view has anything. */
 static int find_nothing(const struct feature_maps *m, struct err *e)
 {
 	const char *dir = m->options->folder;
 
-	if (m->npz)
+	if (m->is_npz)
 		return err_set(e, ERR_FORMAT, "%s: has no VIEW.npy or VIEW_s.npy of a training view", dir);
 	if (!file_is_dir(dir))
 		return err_set(e, ERR_SYSTEM, "%s: no such folder", dir);
@@ -70,7 +58,8 @@ static int find_files(struct feature_maps *m, const struct report *to, struct er
 	const char *dir = m->options->folder;
 	size_t missing = 0;
 
-	if (open_npz(m, e))
+	m->is_npz = path_ends(dir, ".npz") && !file_is_dir(dir);
+	if (m->is_npz && npz_open(&m->npz, dir, e))
 		return -1;
 	for (size_t v = 0; v < c->n; v++) {
 		enum feature_maps_kind kind;
@@ -159,12 +148,11 @@ int feature_maps_find(struct feature_maps *m, const struct feature_maps_options 
 
 void feature_maps_free(struct feature_maps *m)
 {
-	if (m->npz)
-		npz_close(m->npz);
+	npz_close(&m->npz);
 	masks_free(&m->set);
 	mask_index_free(&m->index);
 	text_free(&m->text);
-	mem_free_all(m->npz, m->is_there, m->row);
+	mem_free_all(m->is_there, m->row);
 	*m = (struct feature_maps){0};
 }
 

@@ -21,40 +21,22 @@ static int take_shape(
 	return v->values ? 0 : -1;
 }
 
-/* An array, which is closed; messages call it `name`. */
-static int take_array(
-	struct query_vectors *v, struct npy *a, const char *name, size_t channels, struct err *e)
+static int read_array(struct query_vectors *v, const char *path, size_t channels, struct err *e)
 {
-	int bad = a->dims == 2 ? take_shape(v, a->shape[0], a->shape[1], channels, name, e)
-			       : err_set(e, ERR_FORMAT, "%s: has %d dimensions, not 2: texts and channels",
-					 name, a->dims);
-
-	if (!bad)
-		npy_floats(a, 0, a->count, v->values);
-	npy_close(a);
-	return bad;
-}
-
-static int read_npy(struct query_vectors *v, const char *path, size_t channels, struct err *e)
-{
-	struct npy a;
-
-	return npy_open(&a, path, e) || take_array(v, &a, path, channels, e) ? -1 : 0;
-}
-
-static int read_npz(struct query_vectors *v, const char *path, size_t channels, struct err *e)
-{
-	static const char *const names[] = {"vectors", "arr_0"};
-	SCOPED_BY(npz_close) struct npz z = {0};
-	struct npy a;
+	static const char *const names[2] = {"vectors", "arr_0"};
+	SCOPED_BY(npy_close) struct npy a = {0};
 	SCOPED char *called = NULL;
 
-	if (npz_open(&z, path, e))
+	if (path_ends(path, ".npy") ? npy_open(&a, path, e) : npz_open_main(path, names, &a, &called, e))
 		return -1;
-	const char *name = npz_main(&z, names, sizeof names / sizeof *names, e);
-	const int bad =
-		!name || npz_array(&z, name, "", &a, &called, e) || take_array(v, &a, called, channels, e);
-	return bad ? -1 : 0;
+	const char *name = called ? called : path;
+	if (a.dims != 2)
+		return err_set(
+			e, ERR_FORMAT, "%s: has %d dimensions, not 2: texts and channels", name, a.dims);
+	if (take_shape(v, a.shape[0], a.shape[1], channels, name, e))
+		return -1;
+	npy_floats(&a, 0, a.count, v->values);
+	return 0;
 }
 
 /* The tensor that has the vectors; NULL with *e. */
@@ -90,7 +72,7 @@ static int read_safetensors(struct query_vectors *v, const char *path, size_t ch
 	return bad ? -1 : 0;
 }
 
-/* Checks and scales what was read; frees it where that was bad, or is not finite. */
+/* Checks and scales what was read. */
 static int finish(struct query_vectors *v, int bad, const char *path, struct err *e)
 {
 	for (size_t i = 0; !bad && i < v->n * v->channels; i++)
@@ -99,17 +81,14 @@ static int finish(struct query_vectors *v, int bad, const char *path, struct err
 				i / v->channels);
 	if (!bad)
 		query_unit(v->values, v->n, v->channels);
-	else
-		query_vectors_free(v);
 	return bad ? -1 : 0;
 }
 
 int query_vectors_read(struct query_vectors *v, const char *path, size_t channels, struct err *e)
 {
 	*v = (struct query_vectors){0};
-	const int bad = path_ends(path, ".npy")	  ? read_npy(v, path, channels, e)
-			: path_ends(path, ".npz") ? read_npz(v, path, channels, e)
-						  : read_safetensors(v, path, channels, e);
+	const int is_array = path_ends(path, ".npy") || path_ends(path, ".npz");
+	const int bad = (is_array ? read_array : read_safetensors)(v, path, channels, e);
 
 	return finish(v, bad, path, e);
 }
@@ -249,9 +228,7 @@ int feature_query_write(const struct feature_query *q, const char *path, struct 
 
 	if (!q->options->pixels)
 		return write_selection(q, path, e);
-	if (file_out_open(&out, path, e))
-		return -1;
-	return file_out_end(&out, query_put_masks(out.stream, q, e), e);
+	return file_out_end(&out, file_out_open(&out, path, e) || query_put_masks(out.stream, q, e), e);
 }
 
 void feature_query_free(struct feature_query *q)

@@ -22,7 +22,8 @@ struct query_vectors {
 
 /* The vectors of the sentences in a file of text-encode, else of the one two-dimensional tensor of floats in
  * a safetensors file, or those of a .npy file, or of the array vectors, else arr_0, of a .npz file.
- * ERR_FORMAT where there are other than `channels` of them for each. 0, or -1 with *e and nothing to free. */
+ * ERR_FORMAT where there are other than `channels` of them for each. 0, or -1 with *e; query_vectors_free
+ * after either. */
 int query_vectors_read(struct query_vectors *v, const char *path, size_t channels, struct err *e);
 /* The same of the sentences of a text that was read from a path. */
 int query_vectors_of_text(

@@ -58,34 +58,24 @@ static int check_table(const struct npy *t, int dims, const char *path, struct e
 	return 0;
 }
 
-/* VIEW.npz: its array `features`, or the one that numpy.savez gives no name. */
-static int open_packed(const char *file, struct npy *t, char **called, struct err *e)
-{
-	static const char *const names[] = {"features", "arr_0"};
-	SCOPED_BY(npz_close) struct npz z = {0};
-
-	if (npz_open(&z, file, e))
-		return -1;
-	const char *name = npz_main(&z, names, 2, e);
-	return !name || npz_array(&z, name, "", t, called, e) ? -1 : 0;
-}
-
-/* The view's array with this suffix, and how messages name it. */
+/* The view's array with this suffix, and how messages name it; of VIEW.npz `features`, or the one that
+ * numpy.savez gives no name. */
 static int open_array(const struct feature_maps *m, size_t view, const char *suffix, struct npy *t,
 	char **called, struct err *e)
 {
+	static const char *const names[2] = {"features", "arr_0"};
 	char ending[16];
 
 	*called = NULL;
-	if (m->npz)
-		return npz_array(m->npz, m->scene->cameras.views[view].name, suffix, t, called, e);
+	if (m->is_npz)
+		return npz_array(&m->npz, m->scene->cameras.views[view].name, suffix, t, called, e);
 	snprintf(ending, sizeof ending, "%s.npy", suffix);
 	char *path = *called = view_path(m, view, ending, e);
 	SCOPED char *packed = view_path(m, view, ".npz", e);
 	if (path && packed && !*suffix && !file_exists(path) && file_exists(packed)) {
 		free(path);
 		*called = NULL;
-		return open_packed(packed, t, called, e);
+		return npz_open_main(packed, names, t, called, e);
 	}
 	return !path || !packed || npy_open(t, path, e);
 }
@@ -96,19 +86,16 @@ static int open_table(
 	const int is_map = m->kind == MAPS_CELLS;
 	SCOPED char *called = NULL;
 
-	if (open_array(m, view, is_map ? "" : "_f", t, &called, e))
+	if (open_array(m, view, is_map ? "" : "_f", t, &called, e) ||
+		check_table(t, is_map ? 3 : 2, called, e) ||
+		(is_map && check_shape(m, view, called, t->shape[0], t->shape[1], e)))
 		return -1;
-	if (!check_table(t, is_map ? 3 : 2, called, e) &&
-		(!is_map || !check_shape(m, view, called, t->shape[0], t->shape[1], e))) {
-		*channels = t->shape[t->dims - 1];
-		if (!is_map || !is_channels_first(t, &m->scene->cameras.views[view]))
-			return 0;
-		err_set(e, ERR_FORMAT,
+	*channels = t->shape[t->dims - 1];
+	if (is_map && is_channels_first(t, &m->scene->cameras.views[view]))
+		return err_set(e, ERR_FORMAT,
 			"%s: %zux%zux%zu is channels, height and width, as it seems: transpose it (in NumPy by (1, 2, 0))",
 			called, t->shape[0], t->shape[1], t->shape[2]);
-	}
-	npy_close(t);
-	return -1;
+	return 0;
 }
 
 int feature_tables_channels(const struct feature_maps *m, size_t view, size_t *channels, struct err *e)

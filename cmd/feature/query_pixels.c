@@ -28,13 +28,8 @@ static int choose_views(struct feature_query *q, struct err *e)
 	const struct cameras *c = &q->scene.cameras;
 	const struct features *f = &q->features[0];
 
-	if (scene_read(&q->scene, q->options->pixels, e))
-		return -1;
-	if (f->gaussians != q->scene.splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", f->file.path,
-			f->gaussians, q->options->pixels, q->scene.splats.n);
-	if (fingerprint_check(
-		    "scene", f->file.path, &f->scene, q->options->pixels, &q->scene.fingerprint, e) ||
+	if (scene_read(&q->scene, q->options->pixels, e) ||
+		scene_check(&q->scene, f->file.path, f->gaussians, &f->scene, e) ||
 		!(q->views = mem_alloc(c->n, sizeof *q->views, "views", e)))
 		return -1;
 	for (size_t v = 0; v < c->n; v++)

@@ -52,7 +52,7 @@ static int open_archive(struct moving *m, const char *path, struct err *e)
 	const char *name = NULL;
 
 	m->from = path;
-	if (npz_open(&m->archive, path, e) || !(name = npz_main(&m->archive, names, 2, e)) ||
+	if (npz_open(&m->archive, path, e) || !(name = npz_main(&m->archive, names, e)) ||
 		open_array(m, name, 3, &m->means, e))
 		return -1;
 	m->is_displaced = name == names[1];

@@ -15,7 +15,7 @@ int labelling_open(struct labelling *r, const char *scene, const char *model, st
 	if (!r->model.is_lifted)
 		return err_set(e, ERR_FORMAT, "%s: is a trained model; --all needs one of refer-lift",
 			file_name(model));
-	if (anymodel_check_scene(&r->model, file_name(model), &r->scene, scene, e))
+	if (anymodel_check_scene(&r->model, file_name(model), &r->scene, e))
 		return -1;
 	r->labels = mem_alloc(r->scene.splats.n, sizeof *r->labels, "labels", e);
 	return -(!r->labels || anymodel_place(&r->model, &r->scene, e) ||
@@ -163,10 +163,8 @@ static int put(const struct locating *r, size_t i, const double *time, FILE *out
 int locating_write(const struct locating *r, const char *path, struct err *e)
 {
 	struct file_out out;
-	int bad = 0;
+	int bad = file_out_open(&out, path, e);
 
-	if (file_out_open(&out, path, e))
-		return -1;
 	for (size_t i = 0; i < r->request.count && !bad; i++)
 		bad = put(r, i, NULL, out.stream, e);
 	return file_out_end(&out, bad, e);
@@ -198,7 +196,5 @@ int locating_track(struct locating *r, const char *path, struct err *e)
 	if (!r->request.scene.motion.times)
 		return err_set(e, ERR_USAGE, "--track: %s is still: it has no motion.safetensors",
 			r->request.scene.path);
-	if (file_out_open(&out, path, e))
-		return -1;
-	return file_out_end(&out, track(r, out.stream, e), e);
+	return file_out_end(&out, file_out_open(&out, path, e) || track(r, out.stream, e), e);
 }

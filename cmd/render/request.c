@@ -126,7 +126,7 @@ int request_viewpoint(const struct request *r, struct viewpoint *from, struct er
 int request_answer(struct request *r, const struct viewpoint *from, struct err *e)
 {
 	const struct request_options *o = r->options;
-	const struct anymodel_ask ask = {&r->scene, &r->text, o->model, o->scene, o->text, r->refs, r->count,
+	const struct anymodel_ask ask = {&r->scene, &r->text, o->model, o->text, r->refs, r->count,
 		!o->is_plain, r->parts, o->least, o->wants_parts, from, &r->memo};
 
 	responses_free(&r->responses);

@@ -26,11 +26,7 @@ static char *path_of(const struct trace *t, struct err *e)
 	}
 	if (out && t->n)
 		fputc('z', out);
-	if (out && !fclose(out))
-		return text;
-	err_set(e, ERR_SYSTEM, "outline: out of memory");
-	free(text);
-	return NULL;
+	return mem_text_end(out, &text, 0, "outline", e);
 }
 
 static char *trace_path(const struct rle *mask, int height, int width, struct err *e)

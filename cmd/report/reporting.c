@@ -72,14 +72,9 @@ static char *make_data(const struct report_run *r, const struct report *told, st
 	char *data = NULL;
 	size_t length;
 	FILE *out = open_memstream(&data, &length);
-	int bad = !out || put_data(out, r, told, e);
+	const int bad = out && put_data(out, r, told, e);
 
-	if (out && fclose(out))
-		bad = err_set(e, ERR_SYSTEM, "page: out of memory");
-	if (!bad)
-		return data;
-	free(data);
-	return NULL;
+	return mem_text_end(out, &data, bad, "page", e);
 }
 
 static int put_page(FILE *out, struct report_run *r, const char *made, const struct report *to, struct err *e)
@@ -108,7 +103,7 @@ int reporting_write(
 	if (report_run_read(&r, options, to, e))
 		return -1;
 	SCOPED char *data = make_data(&r, to, e);
-	if (!data || file_out_open(&out, path, e))
-		return -1;
-	return file_out_end(&out, put_page(out.stream, &r, data, to, e), e);
+	return !data ? -1
+		     : file_out_end(&out,
+			       file_out_open(&out, path, e) || put_page(out.stream, &r, data, to, e), e);
 }

@@ -44,17 +44,14 @@ void anymodel_free(struct anymodel *m)
 	*m = (struct anymodel){0};
 }
 
-int anymodel_check_scene(const struct anymodel *m, const char *model, const struct scene *scene,
-	const char *scene_path, struct err *e)
+int anymodel_check_scene(
+	const struct anymodel *m, const char *model, const struct scene *scene, struct err *e)
 {
 	const size_t gaussians = m->is_selection ? m->selection.gaussians
 				 : m->is_lifted	 ? m->lifted.gaussians
 						 : m->trained.scene_gaussians;
 
-	if (gaussians != scene->splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", model,
-			gaussians, scene_path, scene->splats.n);
-	return fingerprint_check("scene", model, &m->origin.scene, scene_path, &scene->fingerprint, e);
+	return scene_check(scene, model, gaussians, &m->origin.scene, e);
 }
 
 int anymodel_place(struct anymodel *m, const struct scene *scene, struct err *e)
@@ -144,7 +141,7 @@ static int check_fit(const struct anymodel *m, const struct anymodel_ask *q, str
 		  asked = !m->is_lifted && m->trained.query == REFER_PARSES ? query_width(q->text->width)
 									    : q->text->width;
 
-	if (anymodel_check_scene(m, model, q->scene, q->scene_path, e))
+	if (anymodel_check_scene(m, model, q->scene, e))
 		return -1;
 	if (!m->is_selection && width != asked)
 		return err_set(e, ERR_FORMAT, "%s: is of sentences of width %d, %s has %d", model, width,
@@ -177,7 +174,7 @@ static int find_viewpoints(const struct anymodel_ask *q, struct viewpoint *from,
 		if (v == NAMES_NONE)
 			bad = err_set(e, ERR_FORMAT,
 				"%s: sentence '%s' is of view '%s', which %s does not have",
-				file_name(q->text_path), q->text->refs[q->which[i]], view, q->scene_path);
+				file_name(q->text_path), q->text->refs[q->which[i]], view, q->scene->path);
 		else
 			from[i] = (struct viewpoint){.kind = VIEWPOINT_CAMERA, .camera = &c->views[v]};
 	}

@@ -30,9 +30,9 @@ struct anymodel {
 int anymodel_read(struct anymodel *m, const char *path, struct err *e);
 void anymodel_free(struct anymodel *m);
 
-/* ERR_FORMAT where it is not of this scene; the names are for messages. */
-int anymodel_check_scene(const struct anymodel *m, const char *model, const struct scene *scene,
-	const char *scene_path, struct err *e);
+/* ERR_FORMAT where it is not of this scene; the name is for messages. */
+int anymodel_check_scene(
+	const struct anymodel *m, const char *model, const struct scene *scene, struct err *e);
 
 /* Where each lifted object is, in the frame of the splats: m->extents. Returns 0, or -1 with *e set. */
 int anymodel_place(struct anymodel *m, const struct scene *scene, struct err *e);
@@ -47,8 +47,8 @@ struct box_record anymodel_box(const struct extent *x, const double offset[3], d
 struct anymodel_ask {
 	const struct scene *scene;
 	const struct text *text;
-	const char *model_path, *scene_path, *text_path; /* for messages */
-	const size_t *which;				 /* (count) the sentences */
+	const char *model_path, *text_path; /* for messages */
+	const size_t *which;		    /* (count) the sentences */
 	size_t count;
 	int wants_calibration; /* of trained models, and the next are of lifted ones: see answer/responses.h
 				*/

@@ -167,7 +167,7 @@ static int write_masks(const char *path, const struct masks *all, struct err *e)
 {
 	struct file_out out;
 
-	return file_out_open(&out, path, e) ? -1 : file_out_end(&out, put_masks(out.stream, all, e), e);
+	return file_out_end(&out, file_out_open(&out, path, e) || put_masks(out.stream, all, e), e);
 }
 
 static int encode_names(const struct serving *s, const char *masks, const char *text, struct err *e)

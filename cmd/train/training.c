@@ -110,13 +110,8 @@ static int read_lifted(struct training *t, const struct training_files *from, st
 
 	if (!from->lifted)
 		return 0;
-	if (lifted_read(&t->lifted, &origin, from->lifted, e))
-		return -1;
-	if (t->lifted.gaussians != t->scene.splats.n)
-		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu",
-			file_name(from->lifted), t->lifted.gaussians, from->scene, t->scene.splats.n);
-	if (fingerprint_check(
-		    "scene", file_name(from->lifted), &origin.scene, from->scene, &t->scene.fingerprint, e) ||
+	if (lifted_read(&t->lifted, &origin, from->lifted, e) ||
+		scene_check(&t->scene, file_name(from->lifted), t->lifted.gaussians, &origin.scene, e) ||
 		names_make(&names, t->lifted.names, sizeof *t->lifted.names, 0, t->lifted.objects, e))
 		return -1;
 	for (r = 0; r < t->sentences; r++)

@@ -62,12 +62,7 @@ int archive_open_zip(struct archive *a, const char *name, struct file_map *map, 
 	*a = (struct archive){.name = name, .map = *map};
 	*map = (struct file_map){0};
 	a->zip = unzOpen2_64(name, &functions);
-	if (!a->zip)
-		err_file(e, name, "not a zip, or its end is missing");
-	else if (!list_entries(a, e))
-		return 0;
-	archive_close(a);
-	return -1;
+	return a->zip ? list_entries(a, e) : err_file(e, name, "not a zip, or its end is missing");
 }
 
 void archive_open_folder(struct archive *a, const char *folder)
@@ -88,7 +83,7 @@ void archive_close(struct archive *a)
 }
 
 /* The current file of the zip. Its sizes are checked before memory is taken for it. */
-static int read_current(struct archive *a, const char *file, char **data, size_t *len, struct err *e)
+static int read_current(const struct archive *a, const char *file, char **data, size_t *len, struct err *e)
 {
 	unz_file_info64 info;
 	size_t most;
@@ -134,7 +129,7 @@ int archive_read(struct archive *a, const char *file, char **data, size_t *len, 
 	return archive_read_entry(a, entry, data, len, e);
 }
 
-int archive_read_entry(struct archive *a, size_t entry, char **data, size_t *len, struct err *e)
+int archive_read_entry(const struct archive *a, size_t entry, char **data, size_t *len, struct err *e)
 {
 	unz64_file_pos at = {a->entries[entry].place, a->entries[entry].number};
 

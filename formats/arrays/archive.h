@@ -24,7 +24,8 @@ struct archive {
 	struct names index;	       /* of their names */
 };
 
-/* A zip that is in memory, which is the archive's from then on; released on failure. 0, or -1 with *e. */
+/* A zip that is in memory, which is the archive's from then on. 0, or -1 with *e; archive_close after either.
+ */
 int archive_open_zip(struct archive *a, const char *name, struct file_map *map, struct err *e);
 
 /* The files of a folder, which must outlive the archive. */
@@ -35,7 +36,7 @@ void archive_close(struct archive *a);
 int archive_read(struct archive *a, const char *file, char **data, size_t *len, struct err *e);
 
 /* The same of one of the entries. */
-int archive_read_entry(struct archive *a, size_t entry, char **data, size_t *len, struct err *e);
+int archive_read_entry(const struct archive *a, size_t entry, char **data, size_t *len, struct err *e);
 
 /* A zip of a few files as they are, written without going back, so that it can go into a pipe. */
 enum { ZIP_FILES_MOST = 16, ZIP_NAME_MOST = 32 };

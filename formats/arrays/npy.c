@@ -210,21 +210,14 @@ static int read_bytes(struct npy *a, const char *data, size_t len, const char *p
 int npy_open(struct npy *a, const char *path, struct err *e)
 {
 	*a = (struct npy){0};
-	if (file_map(path, &a->map, e))
-		return -1;
-	if (!read_bytes(a, (const char *)a->map.data, a->map.len, file_name(path), e))
-		return 0;
-	npy_close(a);
-	return -1;
+	return -(file_map(path, &a->map, e) ||
+		 read_bytes(a, (const char *)a->map.data, a->map.len, file_name(path), e));
 }
 
 int npy_open_bytes(struct npy *a, char *data, size_t len, const char *name, struct err *e)
 {
 	*a = (struct npy){.map = {(const unsigned char *)data, len, 0}};
-	if (!read_bytes(a, data, len, name, e))
-		return 0;
-	npy_close(a);
-	return -1;
+	return read_bytes(a, data, len, name, e);
 }
 
 void npy_close(struct npy *a)

@@ -32,9 +32,9 @@ struct npy {
 	struct file_map map;
 };
 
-/* C order, little-endian. Returns 0, or -1 with *e set and nothing to close. */
+/* C order, little-endian. Returns 0, or -1 with *e; npy_close after either. */
 int npy_open(struct npy *a, const char *path, struct err *e);
-/* The same of bytes in memory, which are a's from then on, also on failure; messages call them `name`. */
+/* The same of bytes in memory, which are a's from then on; messages call them `name`. */
 int npy_open_bytes(struct npy *a, char *data, size_t len, const char *name, struct err *e);
 void npy_close(struct npy *a);
 

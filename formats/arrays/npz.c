@@ -9,10 +9,7 @@ int npz_open(struct npz *z, const char *path, struct err *e)
 	struct file_map map;
 
 	*z = (struct npz){.path = mem_strdup(path, e)};
-	if (z->path && !file_map(path, &map, e) && !archive_open_zip(&z->zip, z->path, &map, e))
-		return 0;
-	npz_close(z);
-	return -1;
+	return -(!z->path || file_map(path, &map, e) || archive_open_zip(&z->zip, z->path, &map, e));
 }
 
 void npz_close(struct npz *z)
@@ -42,7 +39,7 @@ int npz_has(const struct npz *z, const char *name, const char *suffix, struct er
 	return find(z, name, suffix, &place, e) ? -1 : place != NAMES_NONE;
 }
 
-int npz_entry(struct npz *z, size_t place, struct npy *a, char **called, struct err *e)
+int npz_entry(const struct npz *z, size_t place, struct npy *a, char **called, struct err *e)
 {
 	const char *file = z->zip.entries[place].name;
 	const size_t room = strlen(z->path) + strlen(file) + sizeof ": ";
@@ -60,8 +57,8 @@ int npz_entry(struct npz *z, size_t place, struct npy *a, char **called, struct 
 	return bad ? -1 : 0;
 }
 
-int npz_array(
-	struct npz *z, const char *name, const char *suffix, struct npy *a, char **called, struct err *e)
+int npz_array(const struct npz *z, const char *name, const char *suffix, struct npy *a, char **called,
+	struct err *e)
 {
 	size_t place;
 
@@ -72,13 +69,23 @@ int npz_array(
 	return npz_entry(z, place, a, called, e);
 }
 
-const char *npz_main(const struct npz *z, const char *const *names, size_t n, struct err *e)
+const char *npz_main(const struct npz *z, const char *const names[2], struct err *e)
 {
-	for (size_t i = 0; i < n; i++) {
+	for (int i = 0; i < 2; i++) {
 		const int has = npz_has(z, names[i], "", e);
 		if (has)
 			return has > 0 ? names[i] : NULL;
 	}
-	err_file(e, z->path, "has no array '%s' or '%s'", names[0], names[n - 1]);
+	err_file(e, z->path, "has no array '%s' or '%s'", names[0], names[1]);
 	return NULL;
+}
+
+int npz_open_main(const char *path, const char *const names[2], struct npy *a, char **called, struct err *e)
+{
+	SCOPED_BY(npz_close) struct npz z = {0};
+
+	if (npz_open(&z, path, e))
+		return -1;
+	const char *name = npz_main(&z, names, e);
+	return name ? npz_array(&z, name, "", a, called, e) : -1;
 }

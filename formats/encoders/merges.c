@@ -301,17 +301,13 @@ char *merges_print(const struct bpe *b, const int32_t *ids, size_t n, struct err
 	char *text = NULL;
 	size_t length;
 	FILE *stream = open_memstream(&text, &length);
-	int bad = !stream;
+	int bad = 0;
 
-	for (size_t i = 0; i < n && !bad; i++) {
+	for (size_t i = 0; i < n && stream && !bad; i++) {
 		SCOPED char *piece = bpe_read(b, ids[i], i ? ids[i - 1] : -1, e);
-		if (!piece || fprintf(stream, "%s%s", i ? " " : "", piece) < 0)
-			bad = -1;
+		bad = !piece;
+		if (piece)
+			fprintf(stream, "%s%s", i ? " " : "", piece);
 	}
-	if (!stream || fclose(stream) || bad) {
-		err_set(e, ERR_SYSTEM, "pieces: out of memory");
-		free(text);
-		return NULL;
-	}
-	return text;
+	return mem_text_end(stream, &text, bad, "pieces", e);
 }

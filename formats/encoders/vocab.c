@@ -154,10 +154,5 @@ char *vocab_print(const struct vocab *v, const int32_t *ids, size_t n, struct er
 
 	for (size_t i = 0; stream && i < n; i++)
 		fprintf(stream, "%s%s", i ? " " : "", vocab_token(v, ids[i]));
-	if (!stream || fclose(stream)) {
-		err_errno(e, "pieces");
-		free(text);
-		return NULL;
-	}
-	return text;
+	return mem_text_end(stream, &text, 0, "pieces", e);
 }

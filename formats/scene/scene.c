@@ -261,13 +261,17 @@ int scene_read(struct scene *s, const char *dir, struct err *e)
 	SCOPED char *path = file_join(dir, "splats.safetensors", "", e);
 
 	*s = (struct scene){0};
-	int bad = path ? scene_read_splats(s, path, e) : -1;
-	if (bad || !(s->path = mem_strdup(dir, e)) || scene_read_cameras(&s->cameras, dir, e) ||
-		read_motion(s, dir, path, e)) {
-		scene_free(s);
-		return -1;
-	}
-	return 0;
+	return -(!path || scene_read_splats(s, path, e) || !(s->path = mem_strdup(dir, e)) ||
+		 scene_read_cameras(&s->cameras, dir, e) || read_motion(s, dir, path, e));
+}
+
+int scene_check(const struct scene *s, const char *path, size_t gaussians, const struct fingerprint *of,
+	struct err *e)
+{
+	if (gaussians != s->splats.n)
+		return err_set(e, ERR_FORMAT, "%s: is of a scene of %zu Gaussians, %s has %zu", path,
+			gaussians, s->path, s->splats.n);
+	return fingerprint_check("scene", path, of, s->path, &s->fingerprint, e);
 }
 
 void scene_free(struct scene *s)

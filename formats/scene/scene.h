@@ -24,6 +24,11 @@ struct scene {
 int scene_read(struct scene *s, const char *dir, struct err *e);
 void scene_free(struct scene *s);
 
+/* That a file, as it is named, which has so many Gaussians and this fingerprint, is of the scene that was
+ * read. */
+int scene_check(const struct scene *s, const char *path, size_t gaussians, const struct fingerprint *of,
+	struct err *e);
+
 /* One of the files. scene_read_splats sets splats, fingerprint and offset of a zeroed *s. */
 int scene_read_splats(struct scene *s, const char *path, struct err *e);
 int scene_read_cameras_file(struct cameras *c, const char *path, struct err *e);

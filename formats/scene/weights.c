@@ -194,10 +194,7 @@ static int check_origin(const struct weights *w, const struct scene *scene, size
 	const struct fingerprint camera = fingerprint_camera(&sized);
 	const char *path = w->file.path;
 
-	if (w->gaussians != (int64_t)scene->splats.n)
-		return err_file(e, path, "is of a scene of %lld Gaussians, %s has %zu",
-			(long long)w->gaussians, scene->path, scene->splats.n);
-	if (fingerprint_check("scene", path, &w->scene, scene->path, &scene->fingerprint, e))
+	if (scene_check(scene, path, (size_t)w->gaussians, &w->scene, e))
 		return -1;
 	SCOPED char *cameras = file_join(scene->path, "cameras.json", "", e);
 	return !cameras || fingerprint_check("camera", path, &w->camera, cameras, &camera, e) ? -1 : 0;

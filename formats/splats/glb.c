@@ -226,10 +226,8 @@ int glb_read_map(struct splats *s, double offset[3], struct rows_report *report,
 	struct file_map *map, struct err *e)
 {
 	struct source in = {0};
+	const int bad = glb_open(&in.file, name, map, e) || read_all(&in, s, offset, report, e);
 
-	if (glb_open(&in.file, name, map, e))
-		return -1;
-	const int bad = read_all(&in, s, offset, report, e);
 	glb_close(&in.file);
 	return bad;
 }

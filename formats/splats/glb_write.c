@@ -167,18 +167,11 @@ static char *make_json(size_t *length, const struct splats *s, const double offs
 	char *text = NULL;
 	FILE *out = open_memstream(&text, length);
 
-	if (!out) {
-		err_errno(e, "%s", file_name(path));
-		return NULL;
-	}
-	print_json(out, s, offset, a, n, bytes);
-	while (!fflush(out) && *length % 4)
+	if (out)
+		print_json(out, s, offset, a, n, bytes);
+	while (out && !fflush(out) && *length % 4)
 		fputc(' ', out);
-	if (!fclose(out))
-		return text;
-	free(text);
-	err_errno(e, "%s", file_name(path));
-	return NULL;
+	return mem_text_end(out, &text, 0, file_name(path), e);
 }
 
 int glb_write(const struct splats *s, const double offset[3], const char *path, struct err *e)

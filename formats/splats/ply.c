@@ -244,18 +244,13 @@ static int check_foreign(const struct plyfile *f, const struct plyfile_element *
 static int read_vertices(struct splats *s, double offset[3], struct rows_report *report, struct plyfile *f,
 	const struct plyfile_element *vertex, size_t chunks, const struct ply_like *like, struct err *e)
 {
-	struct source in;
+	SCOPED_BY(close_source) struct source in = {0};
 
-	if (check_foreign(f, vertex, e))
+	if (check_foreign(f, vertex, e) || open_source(&in, f, vertex, chunks, e) || find_stays(&in, like, e))
 		return -1;
-	int bad = open_source(&in, f, vertex, chunks, e) || find_stays(&in, like, e);
-	if (!bad) {
-		const struct gaussian_rows rows = {
-			f->path, vertex->rows, in.layout.rest, next_row, &in, like ? like->splats : NULL};
-		bad = gaussian_rows_read(s, offset, report, &rows, e) || check_range(&in, e);
-	}
-	close_source(&in);
-	return bad;
+	const struct gaussian_rows rows = {
+		f->path, vertex->rows, in.layout.rest, next_row, &in, like ? like->splats : NULL};
+	return gaussian_rows_read(s, offset, report, &rows, e) || check_range(&in, e);
 }
 
 /* All elements in the file's order. */
@@ -281,11 +276,9 @@ static int read_elements(struct splats *s, double offset[3], struct rows_report 
 int ply_read_like(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, const struct ply_like *like, struct err *e)
 {
-	struct plyfile f;
+	SCOPED_BY(plyfile_close) struct plyfile f = {0};
 
-	const int bad = plyfile_open(&f, name, map, e) || read_elements(s, offset, report, &f, like, e);
-	plyfile_close(&f);
-	return bad ? -1 : 0;
+	return -(plyfile_open(&f, name, map, e) || read_elements(s, offset, report, &f, like, e));
 }
 
 static void put_header(FILE *out, const struct splats *s, const char *mean_type, int has_labels)

@@ -223,33 +223,34 @@ static int next_row(void *reader, size_t row, double *values, struct err *e)
 	return f->per_channel ? unpack_sh(f, row, values + ROW_REST, e) : 0;
 }
 
-/* From f->files, which are closed. */
+static void release(struct sog *f)
+{
+	for (int i = 0; i < IMAGES; i++)
+		webp_free(&f->images[i]);
+	archive_close(&f->files);
+}
+
+/* From f->files. */
 static int read_all(
 	struct sog *f, struct splats *s, double offset[3], struct rows_report *report, struct err *e)
 {
 	SCOPED char *text = NULL;
 	size_t len;
-	SCOPED_BY(json_release) cJSON *meta = NULL;
 
 	f->name = f->files.name;
-	int bad = archive_read(&f->files, "meta.json", &text, &len, e);
-	if (!bad)
-		meta = json_parse(text, len, f->name, e);
-	bad = bad || !meta || read_parts(f, meta, e);
-	if (!bad) {
-		const struct gaussian_rows rows = {f->name, f->n, 3 * f->per_channel, next_row, f, NULL};
-		bad = gaussian_rows_read(s, offset, report, &rows, e);
-	}
-	for (int i = 0; i < IMAGES; i++)
-		webp_free(&f->images[i]);
-	archive_close(&f->files);
-	return bad ? -1 : 0;
+	if (archive_read(&f->files, "meta.json", &text, &len, e))
+		return -1;
+	SCOPED_BY(json_release) cJSON *meta = json_parse(text, len, f->name, e);
+	if (!meta || read_parts(f, meta, e))
+		return -1;
+	const struct gaussian_rows rows = {f->name, f->n, 3 * f->per_channel, next_row, f, NULL};
+	return gaussian_rows_read(s, offset, report, &rows, e);
 }
 
 int sog_read_map(struct splats *s, double offset[3], struct rows_report *report, const char *name,
 	struct file_map *map, struct err *e)
 {
-	struct sog f = {0};
+	SCOPED_BY(release) struct sog f = {0};
 
 	return archive_open_zip(&f.files, name, map, e) ? -1 : read_all(&f, s, offset, report, e);
 }
@@ -257,7 +258,7 @@ int sog_read_map(struct splats *s, double offset[3], struct rows_report *report,
 int sog_read_meta(
 	struct splats *s, double offset[3], struct rows_report *report, const char *meta, struct err *e)
 {
-	struct sog f = {0};
+	SCOPED_BY(release) struct sog f = {0};
 	SCOPED char *folder = file_dir(meta, e);
 
 	if (!folder)

@@ -280,11 +280,10 @@ static int write_meta(struct writing *w, struct err *e)
 	size_t length;
 	FILE *out = open_memstream(&text, &length);
 
-	if (!out)
-		return err_errno(e, "%s", w->name);
-	print_meta(out, w);
-	return fclose(out) ? err_errno(e, "%s", w->name)
-			   : zip_write_file(&w->zip, "meta.json", text, length, e);
+	if (out)
+		print_meta(out, w);
+	text = mem_text_end(out, &text, 0, w->name, e);
+	return text ? zip_write_file(&w->zip, "meta.json", text, length, e) : -1;
 }
 
 static int write_all(struct writing *w, struct err *e)

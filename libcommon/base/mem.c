@@ -90,6 +90,16 @@ char *mem_strdup(const char *text, struct err *e)
 	return copy;
 }
 
+char *mem_text_end(FILE *stream, char **text, int bad, const char *what, struct err *e)
+{
+	if ((!stream || fclose(stream)) && !bad)
+		bad = err_set(e, ERR_SYSTEM, "%s: out of memory", what);
+	if (!bad)
+		return *text;
+	free(*text);
+	return NULL;
+}
+
 void mem_free_strings(char **strings, size_t n)
 {
 	for (size_t i = 0; strings && i < n; i++)

@@ -4,6 +4,7 @@
 
 #include "base/err.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,6 +26,10 @@ int mem_room(void **block, size_t *capacity, size_t need, size_t size, const cha
 
 /* A copy of a string, NULL with *e set when memory is out. */
 char *mem_strdup(const char *text, struct err *e);
+
+/* Closes a stream of open_memstream, or NULL where that failed. Its *text, which is free()d: where the
+ * writing was `bad`, and *e is set, or memory is out, NULL with *e. */
+char *mem_text_end(FILE *stream, char **text, int bad, const char *what, struct err *e);
 
 /* Before a local's declaration that has an initialiser: what it owns is released wherever its block is left.
  * `SCOPED char *path = file_join(...);` for memory, and for what has a function of its address,

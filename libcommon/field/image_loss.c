@@ -15,10 +15,8 @@ int image_loss_init(struct image_loss *s, size_t pixels, size_t rows, int most, 
 	*s = (struct image_loss){.pixels = pixels, .rows = rows, .threads = threads};
 	s->image = mem_zalloc(pixels, 2 * group * sizeof(float), "images", e);
 	s->slabs = mem_zalloc(rows, (VIEW_SLABS + 2) * width * sizeof(float), "responses", e);
-	if (!s->image || !s->slabs) {
-		image_loss_free(s);
+	if (!s->image || !s->slabs)
 		return -1;
-	}
 	s->dimage = s->image + group * pixels;
 	s->m = s->slabs + VIEW_SLABS * width * rows;
 	s->dm = s->m + width * rows;

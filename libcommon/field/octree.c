@@ -168,10 +168,7 @@ int octree_build(struct octree *t, const struct octree_points *p, double price, 
 	struct builder b = {t, 0, p, price, e};
 	struct moments all;
 	double error;
-	int bad = p->n ? add_cube(&b, entries, p->n, 0, 0, &all, &error) : 0;
-	if (bad)
-		octree_free(t);
-	return bad;
+	return p->n ? add_cube(&b, entries, p->n, 0, 0, &all, &error) : 0;
 }
 
 void octree_free(struct octree *t)

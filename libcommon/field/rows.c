@@ -26,10 +26,8 @@ int rows_of_leaves(struct rows *r, const struct octree *t, const float *means, s
 {
 	size_t next = 0;
 
-	if (start(r, t->n, gaussians, e) || octree_find(t, means, gaussians, r->of, e)) {
-		rows_free(r);
+	if (start(r, t->n, gaussians, e) || octree_find(t, means, gaussians, r->of, e))
 		return -1;
-	}
 	for (size_t i = 0; ids && i < gaussians; i++)
 		if (next < n && (size_t)ids[next] == i)
 			next++;

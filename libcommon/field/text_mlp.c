@@ -26,10 +26,8 @@ int text_mlp_init(struct text_mlp *w, const struct refer_layout *l, size_t sente
 	w->mean = mem_zalloc(most, sides * sizeof(float) * (REFER_T2 + REFER_D), "words", e);
 	w->copied = mem_alloc(learns ? rows : 0, (size_t)l->text_width * sizeof *w->copied, "words", e);
 	w->at = mem_zalloc(most + 1, sizeof *w->at, "words", e);
-	if (!w->h1 || !w->mean || !w->copied || !w->at) {
-		text_mlp_free(w);
+	if (!w->h1 || !w->mean || !w->copied || !w->at)
 		return -1;
-	}
 	w->h2 = w->h1 + rows * REFER_T1;
 	w->e = w->mean + most * REFER_T2;
 	if (!learns)

@@ -25,10 +25,8 @@ int fit_gaussians_alloc(struct fit_gaussians *g, size_t capacity, int degree, st
 	g->slab = mem_zalloc(all, FIT_SLABS * sizeof *g->slab, "Gaussians", e);
 	g->splats.scales = mem_alloc(capacity, 3 * sizeof(float), "Gaussians", e);
 	g->splats.opacities = mem_alloc(capacity, sizeof(float), "Gaussians", e);
-	if (!g->slab || !g->splats.scales || !g->splats.opacities) {
-		fit_gaussians_free(g);
+	if (!g->slab || !g->splats.scales || !g->splats.opacities)
 		return -1;
-	}
 	g->capacity = capacity;
 	for (int s = 0; s < FIT_SLABS; s++)
 		for (int p = 0; p < parts; p++) {

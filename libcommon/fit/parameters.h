@@ -23,7 +23,8 @@ struct fit_gaussians {
 	struct splats splats;		 /* with activations; means and quats are those of the slab */
 };
 
-/* Room for `capacity` Gaussians, all zero; n is 0. Returns 0, or -1 with *e set and *g zeroed. */
+/* Room for `capacity` Gaussians, all zero; n is 0. Returns 0, or -1 with *e; fit_gaussians_free
+ * after either. */
 int fit_gaussians_alloc(struct fit_gaussians *g, size_t capacity, int degree, struct err *e);
 void fit_gaussians_free(struct fit_gaussians *g);
 

@@ -14,10 +14,8 @@ int photograph_make(struct photograph *p, const struct camera *c, double scale, 
 	for (int k = 0; k < FIT_LEVELS; k++) {
 		p->camera[k] = camera_scaled(c, scale / (1 << k));
 		p->rgb[k] = shrink_picture(rgb, height, width, p->camera[k].height, p->camera[k].width, e);
-		if (!p->rgb[k]) {
-			photograph_free(p);
+		if (!p->rgb[k])
 			return -1;
-		}
 	}
 	return 0;
 }

@@ -18,7 +18,7 @@ struct photograph {
 };
 
 /* The view c at `scale` of its size, from a picture of it in any size; where that is smaller, no larger than
- * it. Returns 0, or -1 with *e set and *p zeroed. */
+ * it. Returns 0, or -1 with *e; photograph_free after either. */
 int photograph_make(struct photograph *p, const struct camera *c, double scale, const uint8_t *rgb,
 	int height, int width, struct err *e);
 void photograph_free(struct photograph *p);

@@ -21,10 +21,8 @@ static int ranges_make(struct ranges *g, const struct rle *r, struct err *e)
 	*g = (struct ranges){0};
 	g->items = mem_alloc(r->n / 2, sizeof *g->items, "mask", e);
 	g->first = mem_alloc((size_t)r->width, sizeof *g->first, "mask", e);
-	if (!g->items || !g->first) {
-		ranges_free(g);
+	if (!g->items || !g->first)
 		return -1;
-	}
 	for (size_t i = 0; i < r->n; i++) {
 		if (i % 2) {
 			g->items[g->n][0] = at;

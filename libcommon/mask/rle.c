@@ -140,11 +140,7 @@ int rle_from_runs(struct rle *r, const uint32_t *runs, size_t n, int height, int
 		return -1;
 	for (size_t i = 0; i < n; i++)
 		sum += r->runs[i] = runs[i];
-	if (check_sum(r, sum, e)) {
-		rle_free(r);
-		return -1;
-	}
-	return 0;
+	return check_sum(r, sum, e);
 }
 
 /* One number at text[*at]: groups of five bits, low first, the last one signed. Moves *at behind it. */
@@ -190,22 +186,16 @@ int rle_from_string(struct rle *r, const char *text, int height, int width, stru
 		int64_t x = 0;
 		size_t begin = at;
 		if (read_number(text, &at, &x, e))
-			goto fail;
+			return -1;
 		if (i > 2)
 			x += r->runs[i - 2];
-		if (x < 0 || x > (int64_t)height * width) {
-			err_set(e, ERR_FORMAT, "offset %zu: run %zu is %lld, not within 0 to %lld", begin, i,
-				(long long)x, (long long)height * width);
-			goto fail;
-		}
+		if (x < 0 || x > (int64_t)height * width)
+			return err_set(e, ERR_FORMAT, "offset %zu: run %zu is %lld, not within 0 to %lld",
+				begin, i, (long long)x, (long long)height * width);
 		r->runs[i] = (uint32_t)x;
 		sum += (uint64_t)x;
 	}
-	if (!check_sum(r, sum, e))
-		return 0;
-fail:
-	rle_free(r);
-	return -1;
+	return check_sum(r, sum, e);
 }
 
 char *rle_to_string(const struct rle *r, struct err *e)

@@ -28,7 +28,7 @@ void rle_decode(const struct rle *r, uint8_t *mask);
 int rle_from_runs(struct rle *r, const uint32_t *runs, size_t n, int height, int width, struct err *e);
 
 /* COCO's compressed string (byte-compatible with pycocotools). Parsing reports the offset of a bad character
- * or a sum of runs other than height*width, as ERR_FORMAT without a file name. */
+ * or a sum of runs other than height*width, as ERR_FORMAT without a file name; rle_free after either. */
 int rle_from_string(struct rle *r, const char *text, int height, int width, struct err *e);
 /* free() the result; NULL with *e. */
 char *rle_to_string(const struct rle *r, struct err *e);

@@ -44,9 +44,7 @@ int affinity_init(
 		}
 	a->image = mem_zalloc(a->count, sizeof *a->image, "neighbours", e);
 	a->box = mem_zalloc(a->count, sizeof *a->box, "neighbours", e);
-	if (!a->image || !a->box)
-		affinity_free(a);
-	return a->image ? 0 : -1;
+	return a->image && a->box ? 0 : -1;
 }
 
 /* What each Gaussian has of some masks: rows of shares.h the other way. */

@@ -23,10 +23,8 @@ int region_scores_init(struct region_scores *s, int32_t n, int32_t classes, stru
 	if (!s->votes)
 		return -1;
 	for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-		if (!(*all[k] = mem_zalloc((size_t)n, sizeof **all[k], "regions", e))) {
-			region_scores_free(s);
+		if (!(*all[k] = mem_zalloc((size_t)n, sizeof **all[k], "regions", e)))
 			return -1;
-		}
 	return 0;
 }
 

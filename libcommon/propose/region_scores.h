@@ -20,7 +20,7 @@ struct region_scores {
 	double *votes;	     /* (n,classes) sums over views; after region_scores_end means */
 };
 
-/* Returns 0, or -1 with *e set and nothing to free. */
+/* Returns 0, or -1 with *e; region_scores_free after either. */
 int region_scores_init(struct region_scores *s, int32_t n, int32_t classes, struct err *e);
 void region_scores_free(struct region_scores *s);
 

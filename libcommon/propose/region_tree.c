@@ -66,10 +66,8 @@ int region_tree_make(struct region_tree *t, const struct linkage *l, double leas
 	t->parent = mem_alloc(n, sizeof *t->parent, "regions", e);
 	t->end = mem_alloc(n, sizeof *t->end, "regions", e);
 	t->node = mem_alloc(t->gaussians, sizeof *t->node, "regions", e);
-	if (!kept || !last || !number || !count || !t->parent || !t->end || !t->node) {
-		region_tree_free(t);
+	if (!kept || !last || !number || !count || !t->parent || !t->end || !t->node)
 		return -1;
-	}
 	find_kept(l, least, kept, last);
 	number_nodes(t, l, kept, number, count);
 	for (size_t i = 0; i < t->gaussians; i++)

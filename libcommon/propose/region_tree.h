@@ -22,7 +22,7 @@ struct region_tree {
 };
 
 /* Of a linkage of all Gaussians, the clusters of at least that size, but for those that have hardly grown
- * since the last. Returns 0, or -1 with *e set and nothing to free. */
+ * since the last. Returns 0, or -1 with *e; region_tree_free after either. */
 int region_tree_make(struct region_tree *t, const struct linkage *l, double least, struct err *e);
 /* Sets `end` by `parent`, which is below each node's number. */
 void region_tree_span(struct region_tree *t);

@@ -165,35 +165,27 @@ static int read_all(struct splats *s, double *means, struct rows_report *report,
 	return bad;
 }
 
-static int read_and_shift(struct splats *s, double offset[3], struct rows_report *report,
+int gaussian_rows_read(struct splats *s, double offset[3], struct rows_report *report,
 	const struct gaussian_rows *from, struct err *e)
 {
 	const size_t n = from->n;
 	size_t unused;
 
+	*report = (struct rows_report){0};
 	if (mem_size(n, ROW_MAX * sizeof(double), &unused))
 		return err_set(e, ERR_SYSTEM, "%s: %zu Gaussians do not fit in memory", from->path, n);
 	if (splats_alloc(s, n, 1 + from->rest / 3, e))
 		return -1;
 	SCOPED double *means = mem_alloc(n, 3 * sizeof *means, "means", e);
-	int bad = !means || read_all(s, means, report, from, e) || gaussian_offset(offset, means, s->n, e);
-	for (size_t i = 0; !bad && i < 3 * s->n; i++)
+	if (!means || read_all(s, means, report, from, e) || gaussian_offset(offset, means, s->n, e))
+		return -1;
+	for (size_t i = 0; i < 3 * s->n; i++)
 		s->means[i] = (float)(means[i] - offset[i % 3]);
-	if (!bad && n && !s->n)
+	if (n && !s->n)
 		return err_file(e, from->path,
 			"none of its %zu Gaussians can be used: %zu have a value that is not finite, %zu a zero quaternion",
 			n, report->not_finite, report->zero_quat);
-	return -bad;
-}
-
-int gaussian_rows_read(struct splats *s, double offset[3], struct rows_report *report,
-	const struct gaussian_rows *from, struct err *e)
-{
-	*report = (struct rows_report){0};
-	const int bad = read_and_shift(s, offset, report, from, e);
-	if (bad)
-		splats_free(s);
-	return bad;
+	return 0;
 }
 
 int gaussian_row_of(const struct splats *s, size_t i, double *values)

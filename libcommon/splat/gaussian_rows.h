@@ -37,8 +37,8 @@ struct gaussian_rows {
 	const struct splats *like; /* of n Gaussians; NULL: next returns 0 or -1 */
 };
 
-/* Reads all rows. Returns 0, or -1 with *e set and *s zeroed. The report is complete, its list the caller's
- * after either. */
+/* Reads all rows. Returns 0, or -1 with *e. The report is complete, and its list and *s are the
+ * caller's, after either. */
 int gaussian_rows_read(struct splats *s, double offset[3], struct rows_report *report,
 	const struct gaussian_rows *from, struct err *e);
 

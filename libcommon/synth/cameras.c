@@ -50,11 +50,8 @@ int synth_cameras_make(
 		struct camera *v = &c->views[c->n++];
 		char name[32];
 		snprintf(name, sizeof name, "view_%03d", i);
-		v->name = mem_strdup(name, e);
-		if (!v->name) {
-			cameras_free(c);
+		if (!(v->name = mem_strdup(name, e)))
 			return -1;
-		}
 		v->width = o->width;
 		v->height = o->height;
 		v->fx = v->fy = 0.95 * fmax(o->width, o->height * 4 / 3.0);

@@ -7,7 +7,8 @@
 #include "synth/presets.h"
 
 /* o->views views of one size, all looking at the table; split set: of V views the share of the preset is for
- * testing, at least one, spread evenly and the last among them. 0, or -1 with *e and *c zeroed. */
+ * testing, at least one, spread evenly and the last among them. 0, or -1 with *e; cameras_free after either.
+ */
 int synth_cameras_make(
 	struct cameras *c, const struct synth_options *o, const struct synth_table *table, struct err *e);
 

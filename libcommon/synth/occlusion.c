@@ -29,10 +29,8 @@ int synth_occlusion_make(struct synth_occlusion *s, const struct synth_object *o
 	s->depth = mem_alloc(CELLS, sizeof *s->depth, "depth buffer", e);
 	s->seen = mem_alloc(CELLS, sizeof *s->seen, "depth buffer", e);
 	s->last = mem_alloc(CELLS, sizeof *s->last, "depth buffer", e);
-	if (!s->points || !s->depth || !s->seen || !s->last) {
-		synth_occlusion_free(s);
+	if (!s->points || !s->depth || !s->seen || !s->last)
 		return -1;
-	}
 	for (int i = 0; i < n; i++)
 		set_points(s->points + (size_t)i * 3 * SYNTH_OCCLUSION_POINTS, &objects[i]);
 	return 0;

@@ -19,7 +19,7 @@ struct synth_occlusion {
 			     there */
 };
 
-/* Returns 0, or -1 with *e set and nothing to free. */
+/* Returns 0, or -1 with *e; synth_occlusion_free after either. */
 int synth_occlusion_make(struct synth_occlusion *s, const struct synth_object *objects, int n, struct err *e);
 void synth_occlusion_free(struct synth_occlusion *s);
 

@@ -108,10 +108,8 @@ int synth_wordings_load(struct synth_wordings *w, enum synth_table_of table, str
 		lines += begin[i] == '\n';
 	*w = (struct synth_wordings){.rows = mem_alloc(lines, sizeof *w->rows, "wordings", e),
 		.text = mem_alloc(size + 1, 1, "wordings", e)};
-	if (!w->rows || !w->text) {
-		synth_wordings_free(w);
+	if (!w->rows || !w->text)
 		return -1;
-	}
 	memcpy(w->text, begin, size);
 	w->text[size] = 0;
 	for (char *line = w->text, *next; *line; line = next) {

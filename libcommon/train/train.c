@@ -86,10 +86,8 @@ int train_order_init(struct train_order *o, const struct train_view *views, size
 	if (contrast->negatives >= contrast->sentences)
 		o->contrast.negatives = 0;
 	o->others = mem_alloc(own + contrast->sentences, sizeof *o->others, "order", e);
-	if (!o->order || !o->shuffled || !o->others) {
-		train_order_free(o);
+	if (!o->order || !o->shuffled || !o->others)
 		return -1;
-	}
 	o->view = o->order + groups;
 	o->first = o->view + groups;
 	o->start = o->shuffled + pairs;

@@ -243,19 +243,19 @@ static void try_checkpoint(const char *path)
 static void try_npz(const char *path)
 {
 	struct npz z;
-	struct npy a;
+	struct npy a = {0};
 
-	if (npz_open(&z, path, &e))
-		return;
-	for (size_t i = 0; i < z.zip.n; i++) {
+	const int bad = npz_open(&z, path, &e);
+	for (size_t i = 0; i < z.zip.n && !bad; i++) {
 		const size_t len = strlen(z.zip.entries[i].name);
 		if (len < sizeof ".npy")
 			continue;
 		z.zip.entries[i].name[len - 4] = 0;
 		char *name = strdup(z.zip.entries[i].name);
 		z.zip.entries[i].name[len - 4] = '.';
-		if (name && !npz_array(&z, name, "", &a, NULL, &e))
-			npy_close(&a);
+		if (name)
+			(void)npz_array(&z, name, "", &a, NULL, &e);
+		npy_close(&a);
 		free(name);
 	}
 	npz_close(&z);

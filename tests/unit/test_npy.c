@@ -68,6 +68,7 @@ static void expect(const char *what, const char *with, const char *message)
 	snprintf(expected, sizeof expected, "%s: %s", path, message);
 	CHECK(npy_open(&a, path, &e) && e.code == ERR_FORMAT && !strcmp(e.message, expected), "%s: %s", with,
 		e.message);
+	npy_close(&a);
 }
 
 static void test_errors(void)
@@ -99,6 +100,7 @@ static void test_errors(void)
 	put(other, MATRIX_BYTES);
 	CHECK(npy_open(&a, path, &e) && strstr(e.message, ": offset 6: version 3.0, expected 1.0 or 2.0"),
 		"%s", e.message);
+	npy_close(&a);
 	for (size_t len = 0; len < MATRIX_BYTES; len++) {
 		put(matrix, len);
 		const char *expected = len < 10	    ? "not a .npy file"
@@ -107,6 +109,7 @@ static void test_errors(void)
 		e = (struct err){0};
 		CHECK(npy_open(&a, path, &e) && e.code == ERR_FORMAT && strstr(e.message, expected),
 			"cut at %zu: %s", len, e.message);
+		npy_close(&a);
 	}
 	/* version 2.0 has a longer length */
 	char two[MATRIX_BYTES + 2];
@@ -168,6 +171,7 @@ static void test_types(void)
 				strstr(e.message,
 					"header, offset 20: 'descr' is no float or whole number, little-endian"),
 			"%s: %s", others[k], e.message);
+		npy_close(&a);
 	}
 }
 
