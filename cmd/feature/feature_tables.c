@@ -184,19 +184,6 @@ static int open_labels(const struct feature_maps *m, size_t view, int height, in
 	return 0;
 }
 
-/* Order of painting: the surest mask is on top, of equally sure ones the later. */
-struct painted {
-	double confidence;
-	size_t at;
-};
-
-static int by_confidence(const void *a, const void *b)
-{
-	const struct painted *x = a, *y = b;
-
-	return x->confidence != y->confidence ? COMPARE(x->confidence, y->confidence) : COMPARE(x->at, y->at);
-}
-
 static int paint(const struct feature_maps *m, size_t at, int height, int width, struct feature_sources *s,
 	struct err *e)
 {
@@ -212,6 +199,7 @@ static int paint(const struct feature_maps *m, size_t at, int height, int width,
 	return 0;
 }
 
+/* The surest mask is on top, of equally sure ones the later. */
 static int paint_masks(const struct feature_maps *m, size_t view, int height, int width,
 	struct feature_sources *s, struct err *e)
 {
@@ -219,14 +207,14 @@ static int paint_masks(const struct feature_maps *m, size_t view, int height, in
 	size_t begin, end;
 
 	mask_index_view(&m->index, m->scene->cameras.views[view].name, &begin, &end);
-	SCOPED struct painted *order = mem_alloc(end - begin, sizeof *order, "masks", e);
+	SCOPED struct ranked *order = mem_alloc(end - begin, sizeof *order, "masks", e);
 	int bad = !order || mem_room((void **)&s->mask, &s->mask_room, pixels, 1, "mask", e);
 	for (size_t k = begin; k < end && order; k++) {
 		const size_t at = m->index.keys[k].at;
-		order[k - begin] = (struct painted){mask_confidence(&m->set.items[at]), at};
+		order[k - begin] = (struct ranked){mask_confidence(&m->set.items[at]), at};
 	}
 	if (order)
-		qsort(order, end - begin, sizeof *order, by_confidence);
+		qsort(order, end - begin, sizeof *order, ranked_rising);
 	for (size_t p = 0; p < pixels; p++)
 		s->raw[p] = m->kind == MAPS_MASKS ? -1 : 0;
 	for (size_t k = 0; k < end - begin && !bad; k++)

@@ -163,23 +163,11 @@ static int find_views(struct proposing *p, const struct report *to, struct err *
 	return 0;
 }
 
-struct weighed {
-	double weight;
-	int32_t gaussian;
-};
-
-static int order_weighed(const void *a, const void *b)
-{
-	const struct weighed *p = a, *q = b;
-
-	return p->weight != q->weight ? COMPARE(q->weight, p->weight) : COMPARE(p->gaussian, q->gaussian);
-}
-
 /* The Gaussians that have most of the weight, and which are neighbours. */
 static int find_neighbours(struct proposing *p, const struct report *to, struct err *e)
 {
 	const size_t n = p->scene.splats.n;
-	SCOPED struct weighed *by = mem_alloc(n, sizeof *by, "neighbours", e);
+	SCOPED struct ranked *by = mem_alloc(n, sizeof *by, "neighbours", e);
 	SCOPED float *points = mem_alloc(n, 3 * sizeof *points, "neighbours", e);
 	SCOPED int32_t *kept = mem_alloc(n, sizeof *kept, "neighbours", e);
 	double all = 0, sum = 0;
@@ -187,13 +175,13 @@ static int find_neighbours(struct proposing *p, const struct report *to, struct 
 	if (!by || !points || !kept)
 		return -1;
 	for (size_t i = 0; i < n; i++) {
-		by[i] = (struct weighed){p->weight[i], (int32_t)i};
+		by[i] = (struct ranked){p->weight[i], i};
 		all += p->weight[i];
 	}
-	qsort(by, n, sizeof *by, order_weighed);
-	for (p->kept = 0; p->kept < n && by[p->kept].weight > 0 && sum < KEPT_WEIGHT * all; p->kept++) {
-		sum += by[p->kept].weight;
-		kept[p->kept] = by[p->kept].gaussian;
+	qsort(by, n, sizeof *by, ranked_falling);
+	for (p->kept = 0; p->kept < n && by[p->kept].by > 0 && sum < KEPT_WEIGHT * all; p->kept++) {
+		sum += by[p->kept].by;
+		kept[p->kept] = (int32_t)by[p->kept].at;
 		memcpy(points + 3 * p->kept, p->scene.splats.means + 3 * (size_t)kept[p->kept],
 			3 * sizeof *points);
 	}

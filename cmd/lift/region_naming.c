@@ -8,11 +8,6 @@
 
 #define REGION_CUT 0.5f /* a pixel is of a region that has more than half of it */
 
-static int has(const struct region_tree *t, int32_t region, int32_t node)
-{
-	return node >= region && node < t->end[region];
-}
-
 /* Room for a model of `objects`, of which each Gaussian is in at most so many. */
 static int begin_model(struct lifting *l, size_t objects, size_t shares, struct err *e)
 {
@@ -50,7 +45,7 @@ static int show_regions(struct lifting *l, struct err *e)
 	for (size_t k = 0; k < r->chosen_count; k++) {
 		l->names[l->objects + k] = "";
 		for (size_t i = 0; i < n; i++)
-			shares += (size_t)has(t, r->chosen[k], t->node[i]);
+			shares += (size_t)region_tree_has(t, r->chosen[k], t->node[i]);
 	}
 	if (begin_model(l, l->objects + r->chosen_count, shares, e))
 		return -1;
@@ -59,7 +54,7 @@ static int show_regions(struct lifting *l, struct err *e)
 		l->model.indptr[o + 1] = l->model.indptr[o];
 		l->model.confidence[o] = fminf(r->score[r->chosen[k]], 1);
 		for (size_t i = 0; i < n; i++)
-			if (has(t, r->chosen[k], t->node[i]))
+			if (region_tree_has(t, r->chosen[k], t->node[i]))
 				add_gaussian(&l->model, o, i);
 	}
 	return lifting_add_sentences(l, e);
@@ -76,8 +71,8 @@ static void find_agreement(const struct lifting *l, float *agree)
 		const size_t a = i / count, b = i % count;
 		const double in_a = (double)(indptr[a + 1] - indptr[a]),
 			     in_b = (double)(indptr[b + 1] - indptr[b]);
-		const int is_nested = has(&r->tree, r->chosen[a], r->chosen[b]) ||
-				      has(&r->tree, r->chosen[b], r->chosen[a]);
+		const int is_nested = region_tree_has(&r->tree, r->chosen[a], r->chosen[b]) ||
+				      region_tree_has(&r->tree, r->chosen[b], r->chosen[a]);
 		agree[i] = is_nested ? (float)(fmin(in_a, in_b) / fmax(in_a, in_b)) : 0;
 	}
 }

@@ -49,39 +49,26 @@ static unsigned mean_code(const struct writing *w, size_t i, int k)
 	return length > 0 ? (unsigned)lrint(65535 * (log_of(w->s, w->offset, i, k) - w->low[k]) / length) : 0;
 }
 
-struct place {
-	uint64_t code;
-	size_t i;
-};
-
-static int by_code(const void *a, const void *b)
-{
-	const struct place *x = a, *y = b;
-
-	return x->code != y->code ? COMPARE(x->code, y->code) : COMPARE(x->i, y->i);
-}
-
 /* Gaussians along a curve that fills space (Morton's), so that neighbours in the image are alike. */
 static int find_order(struct writing *w, struct err *e)
 {
 	const size_t n = w->s->n;
-	struct place *places = mem_alloc(n, sizeof *places, w->name, e);
+	SCOPED struct ranked *places = mem_alloc(n, sizeof *places, w->name, e);
 
 	w->order = mem_alloc(n, sizeof *w->order, w->name, e);
-	if (places && w->order) {
-		for (size_t i = 0; i < n; i++) {
-			places[i] = (struct place){0, i};
-			for (int bit = 15; bit >= 0; bit--)
-				for (int k = 0; k < 3; k++)
-					places[i].code =
-						places[i].code << 1 | (mean_code(w, i, k) >> bit & 1);
-		}
-		qsort(places, n, sizeof *places, by_code);
-		for (size_t i = 0; i < n; i++)
-			w->order[i] = places[i].i;
+	if (!places || !w->order)
+		return -1;
+	for (size_t i = 0; i < n; i++) {
+		uint64_t code = 0; /* of 48 bits, which a double has */
+		for (int bit = 15; bit >= 0; bit--)
+			for (int k = 0; k < 3; k++)
+				code = code << 1 | (mean_code(w, i, k) >> bit & 1);
+		places[i] = (struct ranked){(double)code, i};
 	}
-	free(places);
-	return places && w->order ? 0 : -1;
+	qsort(places, n, sizeof *places, ranked_rising);
+	for (size_t i = 0; i < n; i++)
+		w->order[i] = places[i].at;
+	return 0;
 }
 
 /* Pixels are opaque until they are filled. */

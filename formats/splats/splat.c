@@ -8,18 +8,6 @@
 #include <ctype.h>
 #include <math.h>
 
-struct place {
-	double size; /* volume times opacity */
-	size_t gaussian;
-};
-
-static int largest_first(const void *a, const void *b)
-{
-	const struct place *x = a, *y = b;
-
-	return x->size != y->size ? COMPARE(y->size, x->size) : COMPARE(x->gaussian, y->gaussian);
-}
-
 static unsigned char to_byte(double x)
 {
 	return (unsigned char)lrint(fmin(fmax(x, 0), 255));
@@ -82,24 +70,23 @@ void splat_pack(unsigned char bytes[SPLAT_BYTES], const struct splats *s, size_t
 
 int splat_write(const struct splats *s, const double offset[3], const char *path, struct err *e)
 {
-	SCOPED struct place *places = mem_alloc(s->n, sizeof *places, "splats", e);
+	SCOPED struct ranked *places = mem_alloc(s->n, sizeof *places, "splats", e);
 	struct file_out out;
 
 	if (!places)
 		return -1;
-	for (size_t i = 0; i < s->n; i++) {
+	for (size_t i = 0; i < s->n; i++) { /* by volume times opacity */
 		const float *scale = s->scales + 3 * i;
 		places[i] =
-			(struct place){(double)scale[0] * scale[1] * scale[2] * (double)s->opacities[i], i};
+			(struct ranked){(double)scale[0] * scale[1] * scale[2] * (double)s->opacities[i], i};
 	}
-	qsort(places, s->n, sizeof *places, largest_first);
+	qsort(places, s->n, sizeof *places, ranked_falling);
 	int bad = file_out_open(&out, path, e);
 	for (size_t i = 0; i < s->n && !bad; i++) {
 		unsigned char record[SPLAT_BYTES];
-		splat_pack(record, s, places[i].gaussian);
+		splat_pack(record, s, places[i].at);
 		for (size_t k = 0; k < 3; k++)
-			little_put_f32(
-				record + 4 * k, (double)s->means[3 * places[i].gaussian + k] + offset[k]);
+			little_put_f32(record + 4 * k, (double)s->means[3 * places[i].at + k] + offset[k]);
 		fwrite(record, 1, sizeof record, out.stream);
 	}
 	return bad ? -1 : file_out_commit(&out, e);

@@ -1,7 +1,7 @@
 #include "field/image_loss.h"
 
 #include "base/mem.h"
-#include "field/block.h"
+#include "field/panels.h"
 #include "mask/bits.h"
 #include "nn/loss.h"
 
@@ -73,13 +73,6 @@ static double group_loss(struct image_loss *s, const struct view_weights *view, 
 	return sum;
 }
 
-/* A channel of a panel array is at [row / LANES * channels * LANES + row % LANES]. */
-static size_t panel_index(size_t row, int channels, int c)
-{
-	return row / BLOCK_LANES * (size_t)channels * BLOCK_LANES + (size_t)c * BLOCK_LANES +
-	       row % BLOCK_LANES;
-}
-
 double image_loss_run(struct image_loss *s, const struct view_weights *view, const float *m, int count,
 	const uint8_t *const *masks, float *dm)
 {
@@ -94,12 +87,12 @@ double image_loss_run(struct image_loss *s, const struct view_weights *view, con
 		for (size_t i = 0; i < rows; i++)
 			for (int k = 0; k < VIEW_GROUP; k++)
 				s->m[i * VIEW_GROUP + (size_t)k] =
-					k < now ? m[panel_index(i, count, first + k)] : 0;
+					k < now ? m[panels_index(i, count, first + k)] : 0;
 		sum += group_loss(s, view, s->m, now, 0, masks + first, 1 / (double)count, s->dm);
 #pragma omp parallel for schedule(static) num_threads(s->threads)
 		for (size_t i = 0; i < rows; i++)
 			for (int k = 0; k < now; k++)
-				dm[panel_index(i, count, first + k)] = s->dm[i * VIEW_GROUP + (size_t)k];
+				dm[panels_index(i, count, first + k)] = s->dm[i * VIEW_GROUP + (size_t)k];
 	}
 	return sum / count;
 }

@@ -2,7 +2,15 @@
  * array[(i / 64) * channels * 64 + c * 64 + i % 64], and N is padded with zeros to whole blocks. */
 #pragma once
 
+#include "field/block.h"
+
 #include <stddef.h>
+
+/* Where channel c of Gaussian i is. */
+static inline size_t panels_index(size_t i, int channels, int c)
+{
+	return i / BLOCK_LANES * (size_t)channels * BLOCK_LANES + (size_t)c * BLOCK_LANES + i % BLOCK_LANES;
+}
 
 /* N padded. */
 size_t panels_padded(size_t gaussians);

@@ -1,5 +1,6 @@
 #include "fit/grow.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
 
 #include <math.h>
@@ -159,11 +160,6 @@ enum { BISECTIONS = 7 };
 #define GAINS_FROM 0.4	     /* progress: before, images grow and PSNR with them */
 #define LOGIT_NONE (-100.0f) /* of a Gaussian that no view shows */
 
-struct rank {
-	float worth;
-	uint32_t i;
-};
-
 int fit_judge_all(
 	struct fit *f, const struct photograph *first, size_t n, double *psnr, double *ssim, struct err *e)
 {
@@ -202,28 +198,21 @@ int fit_evaluate(struct fit *f, double progress, int *is_due, double *psnr, doub
 	return 0;
 }
 
-static int compare(const void *a, const void *b)
-{
-	const struct rank *x = a, *y = b;
-
-	return x->worth != y->worth ? (x->worth < y->worth ? -1 : 1) : (x->i > y->i) - (x->i < y->i);
-}
-
-static int rank(struct fit *f, struct rank *ranks, char *kept, struct err *e)
+static int rank(struct fit *f, struct ranked *ranks, char *kept, struct err *e)
 {
 	const size_t n = f->gaussians.n;
 	SCOPED float *worth = mem_alloc(n, sizeof *worth, "Gaussians", e);
 	int bad = !worth || fit_shown(f, 0, kept, worth, e);
 
 	for (size_t i = 0; i < n && !bad; i++)
-		ranks[i] = (struct rank){worth[i], (uint32_t)i};
+		ranks[i] = (struct ranked){worth[i], i};
 	if (!bad)
-		qsort(ranks, n, sizeof *ranks, compare);
+		qsort(ranks, n, sizeof *ranks, ranked_rising);
 	return bad ? -1 : 0;
 }
 
 /* PSNR without the first `removed` of the ranks. */
-static int judge_without(struct fit *f, const struct rank *ranks, size_t removed, const float *logits,
+static int judge_without(struct fit *f, const struct ranked *ranks, size_t removed, const float *logits,
 	double *psnr, struct err *e)
 {
 	float *logit = f->gaussians.at[FIT_VALUE][FIT_LOGIT];
@@ -231,13 +220,13 @@ static int judge_without(struct fit *f, const struct rank *ranks, size_t removed
 
 	memcpy(logit, logits, f->gaussians.n * sizeof *logit);
 	for (size_t k = 0; k < removed; k++)
-		logit[ranks[k].i] = LOGIT_NONE;
+		logit[ranks[k].at] = LOGIT_NONE;
 	const int bad = judge(f, psnr, &ssim, e);
 	memcpy(logit, logits, f->gaussians.n * sizeof *logit);
 	return bad;
 }
 
-static int prune(struct fit *f, struct rank *ranks, char *kept, float *logits, struct err *e)
+static int prune(struct fit *f, struct ranked *ranks, char *kept, float *logits, struct err *e)
 {
 	const size_t n = f->gaussians.n;
 	size_t low = 0, high = n / 2;
@@ -254,7 +243,7 @@ static int prune(struct fit *f, struct rank *ranks, char *kept, float *logits, s
 	}
 	memset(kept, 1, n);
 	for (size_t k = 0; k < low; k++)
-		kept[ranks[k].i] = 0;
+		kept[ranks[k].at] = 0;
 	fit_gaussians_keep(&f->gaussians, kept);
 	f->state.most = (int64_t)f->gaussians.n;
 	f->state.is_pruned = 1;
@@ -264,7 +253,7 @@ static int prune(struct fit *f, struct rank *ranks, char *kept, float *logits, s
 int fit_prune(struct fit *f, struct err *e)
 {
 	const size_t n = f->gaussians.n;
-	SCOPED struct rank *ranks = mem_alloc(n, sizeof *ranks, "Gaussians", e);
+	SCOPED struct ranked *ranks = mem_alloc(n, sizeof *ranks, "Gaussians", e);
 	SCOPED char *kept = mem_alloc(n, 1, "Gaussians", e);
 	SCOPED float *logits = mem_alloc(n, sizeof *logits, "Gaussians", e);
 	return -(!ranks || !kept || !logits || prune(f, ranks, kept, logits, e));

@@ -1,11 +1,7 @@
 #include "mask/pool.h"
 
+#include "base/compare.h"
 #include "base/mem.h"
-
-static int order_places(size_t a, size_t b)
-{
-	return (a > b) - (a < b);
-}
 
 /* An object's keys by name alone, whatever the view. */
 static int order_names(const struct mask_key *p, const struct mask_key *q)
@@ -22,14 +18,14 @@ static int order_objects(const void *a, const void *b)
 			      *q = *(const struct mask_key *const *)b;
 	int order = order_names(p, q);
 
-	return order ? order : order_places(p->at, q->at);
+	return order ? order : COMPARE(p->at, q->at);
 }
 
 static int order_groups(const void *a, const void *b)
 {
 	const struct pool_group *p = a, *q = b;
 
-	return order_places(p->first, q->first);
+	return COMPARE(p->first, q->first);
 }
 
 /* Groups are those of keys that follow each other; the first of an object's groups names the object. */

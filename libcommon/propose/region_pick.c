@@ -7,11 +7,6 @@
 static const double area_power = 0.25; /* a thing may be meant however large it is, but for one place in it */
 static const double most_next = 0.2;   /* of the first region's area that a further click adds or takes */
 
-static int has(const struct region_tree *t, int32_t region, int32_t node)
-{
-	return node >= region && node < t->end[region];
-}
-
 struct picked {
 	const struct region_tree *tree;
 	const float *score, *area;
@@ -23,7 +18,8 @@ struct picked {
 static int has_click(const struct picked *p, int32_t region, int is_outside)
 {
 	for (size_t k = 0; k < p->n; k++)
-		if (p->clicks[k].is_outside == is_outside && has(p->tree, region, p->clicks[k].node))
+		if (p->clicks[k].is_outside == is_outside &&
+			region_tree_has(p->tree, region, p->clicks[k].node))
 			return 1;
 	return 0;
 }
@@ -59,8 +55,9 @@ static int32_t choose_next(const struct picked *p, struct region_click click, in
 	const struct region_tree *t = p->tree;
 	int32_t best = -1;
 
-	for (int32_t k = click.node; k >= 0 && !has(t, k, first) && !has_click(p, k, !click.is_outside) &&
-				     p->area[k] <= most_next * p->area[first];
+	for (int32_t k = click.node;
+		k >= 0 && !region_tree_has(t, k, first) && !has_click(p, k, !click.is_outside) &&
+		p->area[k] <= most_next * p->area[first];
 		k = t->parent[k])
 		best = k;
 	return best;

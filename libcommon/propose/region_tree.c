@@ -167,7 +167,7 @@ size_t region_tree_mask(
 	size_t count = 0;
 
 	for (size_t p = 0; p < pixels; p++) {
-		mask[p] = at[p] >= node && at[p] < t->end[node];
+		mask[p] = (uint8_t)region_tree_has(t, node, at[p]);
 		count += mask[p];
 	}
 	return count;
@@ -244,23 +244,6 @@ double region_shown_agrees(const struct region_shown *s, const double box[4])
 	return all > 0 ? both / all : 0;
 }
 
-struct ranked {
-	double score;
-	int32_t node;
-};
-
-static int order_ranked(const void *a, const void *b)
-{
-	const struct ranked *p = a, *q = b;
-
-	return p->score != q->score ? COMPARE(q->score, p->score) : COMPARE(p->node, q->node);
-}
-
-static int contains(const struct region_tree *t, int32_t a, int32_t b)
-{
-	return a <= b && b < t->end[a];
-}
-
 int32_t region_tree_nested(const struct region_tree *t, const double *score, const double *area, double agree,
 	int32_t most, int32_t *chosen, struct err *e)
 {
@@ -270,15 +253,15 @@ int32_t region_tree_nested(const struct region_tree *t, const double *score, con
 	if (!by)
 		return -1;
 	for (int32_t i = 0; i < t->n; i++)
-		by[i] = (struct ranked){score[i], i};
+		by[i] = (struct ranked){score[i], (size_t)i};
 	if (t->n)
-		qsort(by, (size_t)t->n, sizeof *by, order_ranked);
-	for (int32_t i = 0; i < t->n && count < most && by[i].score > 0; i++) {
-		const int32_t node = by[i].node;
+		qsort(by, (size_t)t->n, sizeof *by, ranked_falling);
+	for (int32_t i = 0; i < t->n && count < most && by[i].by > 0; i++) {
+		const int32_t node = (int32_t)by[i].at;
 		int is_same = 0;
 		for (int32_t k = 0; k < count && !is_same; k++) {
 			const int32_t other = chosen[k];
-			const int is_in = contains(t, node, other) || contains(t, other, node);
+			const int is_in = region_tree_has(t, node, other) || region_tree_has(t, other, node);
 			is_same = is_in &&
 				  fmin(area[node], area[other]) > agree * fmax(area[node], area[other]);
 		}

@@ -21,6 +21,12 @@ struct region_tree {
 	int32_t *node;	 /* (N) of each Gaussian; -1: none */
 };
 
+/* 1 where a node, -1 being none, is of a region. */
+static inline int region_tree_has(const struct region_tree *t, int32_t region, int32_t node)
+{
+	return node >= region && node < t->end[region];
+}
+
 /* Of a linkage of all Gaussians, the clusters of at least that size, but for those that have hardly grown
  * since the last. Returns 0, or -1 with *e; region_tree_free after either. */
 int region_tree_make(struct region_tree *t, const struct linkage *l, double least, struct err *e);

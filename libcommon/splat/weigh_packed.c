@@ -128,24 +128,19 @@ void weighed_packed_free(struct weighed_packed *w)
 	free_rows(w);
 }
 
-static int make_rooms(struct weighed_packed *w, int threads, struct err *e)
+static int make_room(struct weighed_packed *w, int rows, int threads, struct err *e)
 {
-	if (threads <= w->room_count)
-		return 0;
-	free_rooms(w);
-	w->rooms = mem_zalloc((size_t)threads, sizeof *w->rooms, "weights", e);
-	w->room_count = w->rooms ? threads : 0;
-	return w->rooms ? 0 : -1;
-}
-
-static int make_rows(struct weighed_packed *w, int count, struct err *e)
-{
-	if (count <= w->row_count)
-		return 0;
-	free_rows(w);
-	w->rows = mem_zalloc((size_t)count, sizeof *w->rows, "weights", e);
-	w->row_count = w->rows ? count : 0;
-	return w->rows ? 0 : -1;
+	if (rows > w->row_count) {
+		free_rows(w);
+		w->rows = mem_zalloc((size_t)rows, sizeof *w->rows, "weights", e);
+		w->row_count = w->rows ? rows : 0;
+	}
+	if (threads > w->room_count) {
+		free_rooms(w);
+		w->rooms = mem_zalloc((size_t)threads, sizeof *w->rooms, "weights", e);
+		w->room_count = w->rooms ? threads : 0;
+	}
+	return w->rows && w->rooms ? 0 : -1;
 }
 
 static int pack_rows(const struct packing *p, struct weigh_room *rooms, int threads, struct err *e)
@@ -172,7 +167,7 @@ int weigh_packed(struct weighed_packed *to, const struct render_view *v, const s
 {
 	const int count = (v->grid.height + VIEW_TILE - 1) / VIEW_TILE, threads = threads_available();
 	SCOPED struct counted *counted = mem_zalloc((size_t)v->grid.rows, sizeof *counted, "weights", e);
-	int bad = !counted || make_rows(to, count, e) || make_rooms(to, threads, e);
+	int bad = !counted || make_room(to, count, threads, e);
 	const struct packing p = {v, limits, dropped, to->rows, counted};
 
 	bad = bad || pack_rows(&p, to->rooms, threads, e) || weights_pack_join(&to->pack, to->rows, count, e);

@@ -10,31 +10,23 @@
 /* Streams of random numbers, one a purpose. */
 enum { STREAM_INIT = 1, STREAM_GROUPS = 2, STREAM_OTHERS = 4, STREAM_VIEWS = 1000 };
 
-static int by_weight(const void *a, const void *b)
-{
-	const double *x = a, *y = b;
-
-	return x[0] != y[0] ? (x[0] > y[0]) - (x[0] < y[0]) : (x[1] > y[1]) - (x[1] < y[1]);
-}
-
 int train_active_set(const double *weight, size_t scene_gaussians, double tolerance, int32_t *ids, size_t *n,
 	struct err *e)
 {
-	SCOPED double(*total)[2] = mem_alloc(scene_gaussians, sizeof *total, "active set", e);
+	SCOPED struct ranked *total = mem_alloc(scene_gaussians, sizeof *total, "active set", e);
 	SCOPED unsigned char *dropped = mem_zalloc(scene_gaussians, 1, "active set", e);
 	double all = 0, left_out = 0;
 
 	if (!total || !dropped)
 		return -1;
 	for (size_t i = 0; i < scene_gaussians; i++) {
-		total[i][0] = weight[i];
-		total[i][1] = (double)i;
+		total[i] = (struct ranked){weight[i], i};
 		all += weight[i];
 	}
-	qsort(total, scene_gaussians, sizeof *total, by_weight);
-	for (size_t i = 0; i < scene_gaussians && left_out + total[i][0] <= tolerance * all; i++) {
-		left_out += total[i][0];
-		dropped[(size_t)total[i][1]] = 1;
+	qsort(total, scene_gaussians, sizeof *total, ranked_rising);
+	for (size_t i = 0; i < scene_gaussians && left_out + total[i].by <= tolerance * all; i++) {
+		left_out += total[i].by;
+		dropped[total[i].at] = 1;
 	}
 	*n = 0;
 	for (size_t i = 0; i < scene_gaussians; i++)
