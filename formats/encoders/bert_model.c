@@ -80,14 +80,9 @@ static int load_all(struct pretrained *s, struct text_tower *b)
 int bert_model_read(struct text_tower *b, const char *dir, struct err *e)
 {
 	struct pretrained s = {.prefix = "", .names = &names, .scale = ".weight", .shift = ".bias", .e = e};
-	int bad = -1;
 
 	*b = (struct text_tower){0};
-	if (read_config(b, dir, e))
-		return -1;
-	if (!pretrained_open(&s.st, dir, NULL, e)) {
-		bad = load_all(&s, b);
-		bad |= pretrained_close(&s, b);
-	}
+	int bad = read_config(b, dir, e) || pretrained_open(&s.st, dir, NULL, e) || load_all(&s, b);
+	bad |= pretrained_close(&s, b);
 	return bad ? -1 : 0;
 }

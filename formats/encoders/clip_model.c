@@ -215,14 +215,11 @@ int clip_model_read(struct text_tower *c, const char *dir, struct err *e)
 {
 	struct pretrained s = {.scale = ".weight", .shift = ".bias", .e = e};
 	struct kind kind = {0};
-	int bad = -1;
 
 	*c = (struct text_tower){.body = {.is_causal = 1, .is_norm_first = 1}};
-	if (read_config(c, &kind, dir, e))
-		return -1;
-	if (!pretrained_open(&s.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e)) {
-		bad = load_all(&s, c, &kind);
-		bad |= pretrained_close(&s, c);
-	}
+	int bad = read_config(c, &kind, dir, e) ||
+		  pretrained_open(&s.st, dir, kind.is_open ? "open_clip_model.safetensors" : NULL, e) ||
+		  load_all(&s, c, &kind);
+	bad |= pretrained_close(&s, c);
 	return bad ? -1 : 0;
 }

@@ -23,12 +23,8 @@ static int load_all(struct pretrained *from, const struct nanodet *n)
 int nanodet_model_read(struct nanodet *n, const char *dir, struct err *e)
 {
 	struct pretrained from = {.prefix = "", .e = e};
+	const int bad = pretrained_open(&from.st, dir, NULL, e) || nanodet_alloc(n, e) || load_all(&from, n);
 
-	if (pretrained_open(&from.st, dir, NULL, e))
-		return -1;
-	int bad = nanodet_alloc(n, e);
-	if (!bad && (bad = load_all(&from, n)))
-		nanodet_free(n);
 	safetensors_close(&from.st);
 	return bad;
 }

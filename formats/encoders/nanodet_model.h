@@ -7,5 +7,5 @@
 /* What is read of the folder. */
 #define NANODET_MODEL_PARTS "*.safetensors"
 
-/* Returns 0 and *n (nanodet_free), or -1 with *e, and then there is nothing to free. */
+/* Of a zeroed *n. Returns 0, or -1 with *e; nanodet_free after either. */
 int nanodet_model_read(struct nanodet *n, const char *dir, struct err *e);
