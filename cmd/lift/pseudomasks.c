@@ -294,8 +294,6 @@ int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *op
 		(method >= PSEUDOMASK_FIRST && find_views(w, to, e)) ||
 		masks_pool(&w->pool, &w->set, w->lines, options->candidates, e))
 		return -1;
-	if (!w->set.n)
-		report_warn(to, "%s: no candidates", file_name(w->options->candidates));
 	if (method != PSEUDOMASK_SCENE &&
 		pool_select(&w->pool, method == PSEUDOMASK_FIRST ? SELECT_TOP1 : (enum select_method)method,
 			w->options->min_score, e))
@@ -303,6 +301,9 @@ int pseudomasks_write(struct pseudomasks *w, const struct pseudomask_options *op
 	for (size_t i = 0; i < w->set.n; i++)
 		weak += !(mask_confidence(&w->set.items[i]) > w->options->min_score);
 	report_note(to, 1, "%zu candidates, %zu of them not above %g", w->set.n, weak, w->options->min_score);
+	if (weak == w->set.n && (!weak || method < PSEUDOMASK_FIRST))
+		report_warn(to, weak ? "%s: none of its candidates is above %g" : "%s: no candidates",
+			file_name(w->options->candidates), w->options->min_score);
 	if (file_out_open(&out, path, e))
 		return -1;
 	w->out = out.stream;

@@ -42,20 +42,26 @@ int score_masks_read(struct score_masks *s, const char *path, struct err *e)
 	return bad;
 }
 
-/* ERR_FORMAT where a mask of a view has another shape than the first mask that `truth` has of it: before
- * anything reorders either. */
+/* ERR_FORMAT where a mask of a view has another shape than the first mask that `truth` has of it, or where
+ * none is of a view of the truth: before anything reorders either. */
 static int score_masks_check(const struct score_masks *s, const struct score_masks *truth, struct err *e)
 {
 	const struct mask *of = truth->set.items;
 	SCOPED_BY(names_free) struct names views = {0};
 	int bad = names_make(&views, of, sizeof *of, offsetof(struct mask, view), truth->n, e);
+	size_t seen = 0;
 
 	for (size_t i = 0; i < s->n && !bad; i++) {
 		const size_t at = names_find(&views, s->set.items[i].view);
+		seen += at != NAMES_NONE;
 		if (at != NAMES_NONE)
 			bad = masks_check_shape(&s->set.items[i], "its truth", of[at].rle.height,
 				of[at].rle.width, s->path, s->lines[i], e);
 	}
+	if (!bad && s->n && truth->n && !seen)
+		bad = err_set(e, ERR_FORMAT,
+			"%s: none of its views is one of %s: are they named alike? They have '%.200s' and '%.200s'",
+			file_name(s->path), file_name(truth->path), s->set.items[0].view, of[0].view);
 	return bad;
 }
 

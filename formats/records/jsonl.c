@@ -258,12 +258,14 @@ int jsonl_name(const struct jsonl *j, const cJSON *object, const char *key, enum
 
 	if (!text && json_string(object, key, need, &text, j->where, e) < 0)
 		return -1;
-	if (!text)
-		return 0;
-	const char *reason = name_fault(text, kind, fault);
+	SCOPED char *copy = text ? name_copy(text, e) : NULL;
+	if (!copy)
+		return text ? -1 : 0;
+	const char *trimmed = kind == NAME_DATA ? name_trim(copy) : copy,
+		   *reason = name_fault(trimmed, kind, fault);
 	if (reason)
 		return jsonl_err(j, e, "key '%s' %s", key, reason);
-	*name = name_copy(text, e);
+	*name = mem_strdup(trimmed, e);
 	return *name ? 0 : -1;
 }
 

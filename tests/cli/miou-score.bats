@@ -143,6 +143,9 @@ strays() { ls | grep -v -x -e truth.jsonl -e pred.jsonl || true; }
 		"miou-score: warning: pred.jsonl: 1 predictions of labelled views match no truth's ref or object and were left out" ]
 	run --separate-stderr "$BIN/miou-score" -q --truth truth.jsonl pred.jsonl
 	[ -z "$stderr" ]
+	sed 's/"view":"[^"]*"/"view":"other"/' pred.jsonl | head -n 1 >strange.jsonl
+	run "$BIN/miou-score" --truth truth.jsonl strange.jsonl
+	[ "$status" = 3 ] && [[ "$output" == "miou-score: strange.jsonl: none of its views is one of truth.jsonl: are they named alike? They have 'other' and '"* ]]
 }
 
 @test "a prediction of another size is brought to the truth's" {

@@ -159,6 +159,8 @@ strays() { ls | grep -v -x candidates.jsonl || true; }
 	[ "$status" -eq 0 ]
 	[ -z "$output" ]
 	[ "$stderr" = "pseudomask-select: warning: /dev/null: no candidates" ]
+	echo '{"view":"v1","object":"o","score":0.2,"segmentation":{"size":[2,3],"counts":[0,1,5]}}' >weak
+	[ "$("$BIN/pseudomask-select" weak 2>&1)" = "pseudomask-select: warning: weak: none of its candidates is above 0.3" ]
 	run "$BIN/pseudomask-select" -q < /dev/null
 	[ -z "$output" ]
 }

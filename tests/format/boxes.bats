@@ -29,7 +29,7 @@ score() { "$BIN/miou-score" --boxes --truth truth "$@"; }
 	refuses "3: neither key 'ref' nor key 'object'" "{$unit}"
 	refuses "3: key 'ref' is not a string" "{\"ref\":1.5,$unit}"
 	refuses "3: key 'object' is empty" "{\"object\":\"\",$unit}"
-	refuses "3: key 'object' has a control character at byte 2" "{\"object\":\"o\\n\",$unit}"
+	refuses "3: key 'object' has a control character at byte 2" "{\"object\":\"o\\nx\",$unit}"
 	refuses "3: key 'ref' is not UTF-8 at byte 1" "{\"ref\":\"$(printf '\xff')\",\"object\":\"o\",$unit}"
 	refuses "3: ref 'r1' is already on line 1" "{\"ref\":\"r1\",$unit}"
 	refuses "4: object 'o' is already on line 3" "{\"object\":\"o\",$unit}" "{\"object\":\"o\",$unit}"

@@ -24,12 +24,13 @@ refuses() {
 	says 0 'out: ok: refer.text, 3 sentences, 2 words, 24 columns, encoder 6c0c28a4bc757d74' "$BIN/gs-check" out
 }
 
-@test "names that are whole numbers" {
-	echo '{"ref":1,"object":20,"text":"t","views":[3,"v"]}' >x
+@test "names that are whole numbers, and blanks around names" {
+	echo '{"ref":1,"object":" 20\u00a0","text":"t","views":[3,"v"]}' >x
 	"$BIN/text-encode" --model "$MODEL" -o out x
 	[ "$(head -c 4000 out | strings | grep -c '"refs":"\[\\"1\\"\]".*"objects":"\[\\"20\\"\]"\|"objects":"\[\\"20\\"\]".*"refs":"\[\\"1\\"\]"')" = 1 ]
 	rm out
-	refuses "4: ref '1' is already on line 3" '{"ref":1,"object":"o","text":"t"}' '{"ref":"1","object":"o","text":"t"}'
+	refuses "4: ref '1' is already on line 3" '{"ref":1,"object":"o","text":"t"}' '{"ref":"1 ","object":"o","text":"t"}'
+	refuses "3: key 'object' is empty" '{"ref":1,"object":" ","text":"t"}'
 }
 
 @test "lines that are not objects" {
