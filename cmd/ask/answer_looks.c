@@ -102,8 +102,8 @@ static int material_of(const char *lemma)
 		" plastic acrylic vinyl nylon silicone foam ", " rubber ", " glass crystal ",
 		" ceramic porcelain china clay terracotta ", " stone marble concrete granite ",
 		" leather suede ",
-		" cloth fabric textile cotton wool woollen woolen woolly linen silk denim velvet felt fleece fur furry "
-		"plush polyester canvas ",
+		(" cloth fabric textile cotton wool woollen woolen woolly linen silk denim velvet felt fleece fur furry "
+		 "plush polyester canvas "),
 		" paper cardboard card ", " wax "};
 	int k = (int)(sizeof alike / sizeof *alike) - 1;
 
