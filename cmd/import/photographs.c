@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/mem.h"
 #include "base/name.h"
+#include "base/names.h"
 #include "base/path.h"
 #include "base/utf8.h"
 #include "geom/views.h"
@@ -77,6 +78,8 @@ static char *image_path(const char *scene, const char *path, struct err *e)
 
 int photographs_find(struct cameras *c, const char *images, const char *scene, size_t *missing, struct err *e)
 {
+	size_t twice, earlier;
+
 	*missing = 0;
 	for (size_t i = 0; i < c->n; i++) {
 		struct camera *v = &c->views[i];
@@ -91,5 +94,13 @@ int photographs_find(struct cameras *c, const char *images, const char *scene, s
 		}
 		*missing += !v->image;
 	}
-	return 0;
+	if (names_find_twice(
+		    c->views, sizeof *c->views, offsetof(struct camera, image), c->n, &twice, &earlier, e))
+		return -1;
+	return twice == NAMES_NONE
+		       ? 0
+		       : err_set(e, ERR_FORMAT,
+				 "%s: views '%.200s' and '%.200s' have one photograph, %s: give the folder that theirs are in",
+				 images, c->views[earlier].name, c->views[twice].name,
+				 view_base(c->views[twice].image));
 }

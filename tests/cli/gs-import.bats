@@ -311,6 +311,12 @@ $unchecked" "$BIN/gs-import" --cameras model -o scene s.ply
 	rm -r scene
 	"$BIN/gs-import" --cameras model -o scene s.ply
 	[ "$(imported name | tr -d '\n')" = "$names" ]
+	# a flat folder has one of two
+	mkdir flat
+	touch flat/0002.png
+	rm -r scene
+	says 3 "gs-import: flat: views 'cam1_0002' and 'cam2_0002' have one photograph, 0002.png: give the folder that theirs are in" \
+		"$BIN/gs-import" --cameras model --images flat -o scene s.ply
 }
 
 @test "a photograph whose path is not UTF-8 is not named" {
