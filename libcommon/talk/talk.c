@@ -80,8 +80,12 @@ static int find_again(const struct talk *talk, const struct question_asked *last
 {
 	static const unsigned begins = 1U << CLOSED_DETERMINER | 1U << CLOSED_ATTRIBUTE | 1U << CLOSED_SIZE |
 				       1U << CLOSED_PLACE | 1U << CLOSED_GENERIC;
-	const int about = tokens_is(t, 1, "about") && (tokens_is(t, 0, "what") || tokens_is(t, 0, "how"));
-	const int is_and = tokens_is(t, 0, "and"), from = about ? 2 : is_and;
+	int from = 0, is_and = t->n && tokens_is(t, t->n - 1, "then|too|also");
+
+	while (tokens_is(t, from, "ok|okay|well|fine|good|now|and|or|also|so"))
+		is_and |= tokens_is(t, from++, "and|or|also");
+	const int about = tokens_is(t, from, "what|how") && tokens_is(t, from + 1, "about");
+	from += 2 * about;
 	const int class = from < t->n ? tokens_class(t, from) : CLOSED_BE;
 	struct question_asked q;
 

@@ -155,6 +155,7 @@ kind() { ask --json run "$1" | jq -r "$2" || [ "${PIPESTATUS[0]}" = 1 ]; }
 	a=$(sed -n 1p things) b=$(sed -n 2p things)
 	printf '%s\n' "how tall is the $a?" "how wide is it" "and the $b?" "where is it?" "no, the other one" "" "where is it?" | ask --json run >said || [ $? = 1 ]
 	printf '%s\n' "how tall is the $a?" "and how wide?" | ask --json run | jq -se '.[1].understood | startswith("how wide is the")'
+	printf '%s\n' "is there a ${a##* }?" "ok, the $b then?" "or a sofa?" | ask --json run | jq -se '.[1:] | map(.yes) == [true, false]'
 	jq -r '[.kind, .understood // "", .things[0].name // ""] | join("|")' said >lines
 	sed -i 's/|[^|]*$/|/;5s/.*/other/' lines
 	printf '%s\n' "height||" "width|how wide is the $a|" "width|how wide is the $b|" "which|where is the $b?|" other "which||" | diff - lines

@@ -24,6 +24,7 @@ static void forms(void)
 	is("mug, jug, tray: how many of them are red?", QUESTION_NUMBER,
 		"the mug, the jug and the tray that are red", "");
 	is("the total", QUESTION_WHICH, "the total", "");
+	is("what's smaller, the mug or its lid?", QUESTION_COMPARE, "the mug", "the lid");
 	is("mug vs jug: who is taller?", QUESTION_COMPARE, "the mug", "the jug");
 	is("Sort the mug, the jug and the tray by height: which one is second?", QUESTION_WHICH,
 		"the second tallest of the mug, the jug and the tray", "");
