@@ -163,6 +163,7 @@ static double judge_relation(
 	const struct parse_phrase *f = &p->phrases[phrase];
 	struct relation r = {c->relation, c->degree, width_of(p, f, c->relation), 0, 0, anchors};
 	double known = 1;
+	int is_under = 0;
 
 	if (counted_by(p, f, counts_along) == c)
 		r.place = f->ordinal;
@@ -182,9 +183,13 @@ static double judge_relation(
 		if (!p->phrases[i].viewer && !anchors[r.count].is_scene)
 			known = fmin(known,
 				fmin(m->known[i], largest(there_of(m, i), objects_of(m)) / GENERIC_THERE));
+		is_under |= anchors[r.count].is_scene && c->relation == PARSE_BELOW &&
+			    meaning_has_word(p, &p->phrases[i], "table|tabletop|desk|desktop|floor|ground");
 		r.count++;
 	}
 	relate(m->arrangement, &r, fit, m->scratch + 3 * objects_of(m), value);
+	for (size_t o = 0; o < objects_of(m) && is_under; o++)
+		value[o] = 0; /* nothing is below what all stands on */
 	/* "the two leftmost": the second as well as the first */
 	double *next = m->scratch + 6 * objects_of(m);
 	const int more = r.degree == PARSE_MOST && !r.place ? f->count : 0;
