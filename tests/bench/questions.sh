@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# Usage: [BIN=build/bin] [BERT=DIR] [DATA=DIR/desk] [KEEP=DIR] tests/bench/questions.sh SET
+# Usage: [BIN=build/bin] [BERT=DIR] [DATA=DIR/desk] [ROOM=DIR/room SPLATS=room.ply] [KEEP=DIR] tests/bench/questions.sh SET
 #
-# Asks refer-ask the questions of tests/bench/questions/SET, conversations among them: of a scene of gs-synth (SCENE-SEED.jsonl) and, with
-# DATA, of the desk. They were written from the pictures and a table of the things' boxes, without knowledge of the program, with what a
-# person would answer. Those of `looked-at` were read while the program was changed; of `kept-back` please read only the figures.
+# Asks refer-ask the questions of tests/bench/questions/SET, conversations among them: of a scene of gs-synth (SCENE-SEED.jsonl), with
+# DATA of the desk, and with ROOM of the room of pipelines/lift.md. They were written from the pictures and a table of the things' boxes,
+# without knowledge of the program, with what a person would answer. Those of `looked-at` were read while the program was changed; of
+# `kept-back` please read only the figures.
 #
 # Prints for each kind how many were answered as a person would: exactly the things, the number, yes or no, a colour, a length within the
 # tolerance, that there is none, or which of two is meant; of `looked-at` also each that was not. KEEP as in said.sh.
@@ -21,7 +22,7 @@ scenes=${KEEP:-$work}
 
 for file in "$here/questions/$1"/*.jsonl; do
 	name=$(basename "$file" .jsonl)
-	[ "$name" != desk ] || [ -n "${DATA:-}" ] || continue
+	case $name in desk) [ -n "${DATA:-}" ] || continue ;; room) [ -n "${ROOM:-}" ] || continue ;; esac
 	[ -n "${ASK:-}" ] || make_scene "$name"
 	# a blank line before each conversation
 	jq -r --arg alone "${ALONE:-}" '(if .after and $alone == "" then empty else "" end), .question' "$file" >"$work/questions"

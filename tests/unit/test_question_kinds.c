@@ -25,6 +25,9 @@ static void forms(void)
 		"the mug, the jug and the tray that are red", "");
 	is("the total", QUESTION_WHICH, "the total", "");
 	is("what's smaller, the mug or its lid?", QUESTION_COMPARE, "the mug", "the lid");
+	is("of the mugs, which ones aren't red?", QUESTION_SET, "the mugs that are not red", "");
+	is("which of the mugs isn't red?", QUESTION_SET, "the mugs that are not red", "");
+	is("among the mugs, which are on the tray?", QUESTION_SET, "the mugs that are on the tray", "");
 	is("mug vs jug: who is taller?", QUESTION_COMPARE, "the mug", "the jug");
 	is("Sort the mug, the jug and the tray by height: which one is second?", QUESTION_WHICH,
 		"the second tallest of the mug, the jug and the tray", "");
