@@ -38,10 +38,11 @@ static void fill(char to[QUESTION_TEXT], const char *asks, const struct matching
 		if (!is)
 			continue;
 		const struct capture of = m->of[is - marks];
-		const int is_denied = tokens_is(m->tokens, of.begin, "n't"), /* apart from its verb */
+		const int is_denied = tokens_is(m->tokens, of.begin, "n't"),  /* apart from its verb */
 			is_own = tokens_is(m->tokens, of.begin, "its|their"); /* "the laptop or its mouse" */
 		const int first = of.begin + ((is_denied || is_own) && of.begin + 1 < of.end);
-		const int begin = m->tokens->word[first].span.begin, end = m->tokens->word[of.end - 1].span.end;
+		const int begin = m->tokens->word[first].span.begin,
+			  end = m->tokens->word[of.end - 1].span.end;
 		n += (size_t)snprintf(to + n, QUESTION_TEXT - n, "%s%.*s",
 			is_denied ? "not "
 			: is_own  ? "the "
