@@ -177,6 +177,32 @@ static void compare(struct answer_told *t, struct asking_answer *found, size_t a
 			answering_length_name(kind), t->asking->model.lifted.names[loser]);
 }
 
+/* "Which of the mugs and jugs is the tallest?": of all that there are the two that are it most, in place of
+ * one of each. */
+static int find_most(struct answer_told *t, struct asking_answer *found, struct asking *a, size_t anchor,
+	const struct report *to, struct err *e)
+{
+	enum question_kind kind;
+
+	for (int k = 0; k < 2; k++) {
+		SCOPED_BY(asking_answer_free) struct asking_answer group = {0};
+		if (asking_ask(a, t->asked.text[k], 0, &group, to, e))
+			return -1;
+		for (size_t i = 0; i < group.count; i++) {
+			const size_t o = group.things[i];
+			const double x = compared_by(t, o, anchor, &kind);
+			if (o == found->things[0] || o == found->things[1])
+				continue;
+			found->probability[o] = group.probability[o];
+			const int less = compared_by(t, found->things[1], anchor, &kind) <
+					 compared_by(t, found->things[0], anchor, &kind);
+			if (x > compared_by(t, found->things[less], anchor, &kind))
+				found->things[less] = o;
+		}
+	}
+	return 0;
+}
+
 static int answer_compared(struct answer_told *t, struct asking_answer *found, struct asking *a,
 	const struct report *to, struct err *e)
 {
@@ -189,10 +215,13 @@ static int answer_compared(struct answer_told *t, struct asking_answer *found, s
 		memcpy(found->reason, anchor.reason, sizeof found->reason);
 		return 0;
 	}
-	compare(t, found, anchor.count ? anchor.things[0] : ASKING_NONE);
+	const size_t nearest = anchor.count ? anchor.things[0] : ASKING_NONE;
+	if (t->asked.most && find_most(t, found, a, nearest, to, e))
+		return -1;
+	compare(t, found, nearest);
 	/* "which are taller, the mugs or the jugs?": all of these */
 	const char *won = t->asked.text[!t->is_yes];
-	if (t->asked.kind != QUESTION_COMPARE || !*won || anchor.count)
+	if (t->asked.kind != QUESTION_COMPARE || !*won || anchor.count || t->asked.most)
 		return 0;
 	SCOPED_BY(asking_answer_free) struct asking_answer all = {0};
 	if (asking_ask(a, won, 0, &all, to, e))

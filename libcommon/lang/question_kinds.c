@@ -184,6 +184,11 @@ static void take(struct question_asked *q, size_t row, const struct matching *m,
 	if (q->kind == QUESTION_SET) /* "closest to the mug" is one */
 		q->most = closed >= 0 && closed_words[closed].value == PARSE_MOST &&
 			  (q->relation == PARSE_NEAR || q->relation == PARSE_FAR);
+	if (q->kind == QUESTION_COMPARE) { /* "which of the mugs and jugs is the tallest?" */
+		q->most = closed >= 0 && closed_words[closed].value == PARSE_MOST;
+		for (int i = 0; i < m->tokens->n; i++)
+			q->most &= !tokens_is(m->tokens, i, "are|'re|were");
+	}
 	if (!word.end && (q->kind == QUESTION_COMPARE || q->kind == QUESTION_SAME))
 		q->relation = relation_of_noun(m->tokens);
 	take_how(q, row,

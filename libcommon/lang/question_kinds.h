@@ -36,15 +36,15 @@ enum { QUESTION_TEXT = 2048, QUESTION_WAYS = 8 /* that are worth trying */ };
 
 struct question_asked {
 	enum question_kind kind;
-	int relation; /* enum parse_relation of the word of size or place that asks ("tall"), or that a place
-			 begins with ("on the tray"); -1 where there is none */
-	int least;    /* of QUESTION_NUMBER: 1 where kinds of things are counted; of QUESTION_THERE: how many
-			 have to be there, 0: any; of QUESTION_WHETHER: 1 where nothing else is the second; of
-			 QUESTION_TALLY: by how many there have to be more; of QUESTION_MAJORITY: -1 where it
-			 asks for fewer */
-	int most; /* of QUESTION_THERE: how many there may be, and of QUESTION_SET 1 where but one is; 0: any
-		     number */
-	int is_denied;		     /* of QUESTION_THERE: yes where none is */
+	int relation;  /* enum parse_relation of the word of size or place that asks ("tall"), or that a place
+			  begins with ("on the tray"); -1 where there is none */
+	int least;     /* of QUESTION_NUMBER: 1 where kinds of things are counted; of QUESTION_THERE: how many
+			  have to be there, 0: any; of QUESTION_WHETHER: 1 where nothing else is the second; of
+			  QUESTION_TALLY: by how many there have to be more; of QUESTION_MAJORITY: -1 where it
+			  asks for fewer */
+	int most;      /* of QUESTION_THERE: how many there may be, and of QUESTION_SET and QUESTION_COMPARE 1
+			  where but one is meant; 0: any number */
+	int is_denied; /* of QUESTION_THERE: yes where none is */
 	char text[3][QUESTION_TEXT]; /* what to ask for; "" nothing. The second of QUESTION_COLOUR: the whole,
 				      * where the first is a part. The third: what two are compared by */
 	struct parse_span about;     /* of the question: the thing that it asks about; empty: not known */

@@ -57,6 +57,19 @@ static void forms(void)
 	is("could you kindly show me the spoon?", QUESTION_WHICH, "could you kindly show me the spoon?", "");
 }
 
+/* Of two groups one thing, or all of one. */
+static void groups(void)
+{
+	struct question_asked q = {0};
+
+	CHECK(question_read(&q, "which of the mugs and jugs is the tallest?", 0) &&
+			q.kind == QUESTION_COMPARE && q.most == 1,
+		"%d", q.most);
+	CHECK(question_read(&q, "which are the tallest, the mugs or the jugs?", 0) &&
+			q.kind == QUESTION_COMPARE && !q.most,
+		"%d", q.most);
+}
+
 /* What splats and sentences cannot tell. */
 static void untold(void)
 {
@@ -165,6 +178,7 @@ int main(void)
 {
 	kinds();
 	forms();
+	groups();
 	untold();
 	ways();
 	words();
