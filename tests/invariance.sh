@@ -15,7 +15,9 @@ cd "$work" || exit 1
 questions='where is the blue cone?
 the box to the left of the book
 what is farthest from the cone?
-the two boxes that are next to each other'
+the two boxes that are next to each other
+how tall is the blue cone?
+how high above the table is the book?'
 
 # through FOLDER: everything, from its splats, cameras and records.
 through() (
@@ -78,7 +80,7 @@ row() {
 	[ ! -e "$folder/names" ] || sed -i -f "$folder/names" "$folder/rendered"
 	for f in base "$folder"; do
 		jq -c '[.view, .ref, .segmentation]' "$f/rendered" | sort >"$f/masks.txt"
-		jq -r '[.question, .answered] + [.things[].name] | join("|")' "$f/asked" >"$f/answers.txt"
+		jq -r '[.question, .answered] + [.things[].name] + [.value // "" | capture("(?<n>[0-9.]+) times").n] | join("|")' "$f/asked" >"$f/answers.txt"
 	done
 	all=$(wc -l <base/masks.txt)
 	equal=$(comm -12 base/masks.txt "$folder/masks.txt" | wc -l)

@@ -1,6 +1,8 @@
 /* How large a thing is. */
 #include "cmd/ask/answering.h"
 
+#include "geom/vector.h"
+
 #include <math.h>
 
 static const struct box *box_of(const struct answer_told *t, size_t object)
@@ -11,40 +13,67 @@ static const struct box *box_of(const struct answer_told *t, size_t object)
 /* The part of a thing's height that may be hidden at its foot, of what is seen of it. */
 static const double hidden = 0.4;
 
-static double foot_of(const struct answer_told *t, size_t object)
+/* How high a box's middle is: the third axis of all of them is up, wherever that is in the scene. */
+static double level_of(const struct box *b)
 {
-	return box_of(t, object)->centre[2] - box_of(t, object)->half[2];
+	return vector_dot(b->axes[2], b->centre);
 }
 
-/* What all stand on, *ground, which the lowest foot tells; and where a thing's own foot is: on that, or on
- * the top of what is below it, as what is close to it hides the lowest Gaussians. */
-static double find_foot(const struct answer_told *t, size_t object, double *ground)
+static double foot_of(const struct box *b)
+{
+	return level_of(b) - b->half[2];
+}
+
+/* How far the middles of two boxes are apart over the ground. */
+static double aside_of(const struct box *a, const struct box *b)
+{
+	double d[3], along[2];
+
+	for (int k = 0; k < 3; k++)
+		d[k] = a->centre[k] - b->centre[k];
+	for (int k = 0; k < 2; k++)
+		along[k] = vector_dot(a->axes[k], d);
+	return hypot(along[0], along[1]);
+}
+
+/* What all stand on: the lowest foot but one, as a cloth may hang over the edge, or the lowest of two things.
+ */
+static double find_ground(const struct answer_told *t)
+{
+	double lowest[2] = {INFINITY, INFINITY};
+
+	for (size_t o = 0; o < t->asking->model.lifted.objects; o++) {
+		const double foot = t->asking->model.extents[o].n ? foot_of(box_of(t, o)) : INFINITY;
+		lowest[1] = fmin(lowest[1], fmax(lowest[0], foot));
+		lowest[0] = fmin(lowest[0], foot);
+	}
+	return t->asking->model.lifted.objects > 2 && isfinite(lowest[1]) ? lowest[1] : lowest[0];
+}
+
+/* Where a thing's own foot is: on the ground, or on the top of what is below it, as what is close to it hides
+ * the lowest Gaussians. */
+static double find_foot(const struct answer_told *t, size_t object, double ground)
 {
 	const struct box *own = box_of(t, object);
-	const double foot = foot_of(t, object);
-	double under = -INFINITY;
+	const double foot = foot_of(own);
+	double under = ground;
 
-	*ground = foot;
 	for (size_t o = 0; o < t->asking->model.lifted.objects; o++) {
 		const struct box *b = box_of(t, o);
-		const double top = b->centre[2] + b->half[2];
-		if (!t->asking->model.extents[o].n)
-			continue;
-		*ground = fmin(*ground, foot_of(t, o));
-		if (o != object && top < own->centre[2] &&
-			hypot(own->centre[0] - b->centre[0], own->centre[1] - b->centre[1]) <
-				fmax(b->half[0], b->half[1]))
+		const double top = level_of(b) + b->half[2];
+		if (o != object && t->asking->model.extents[o].n && top < level_of(own) &&
+			aside_of(own, b) < fmax(b->half[0], b->half[1]))
 			under = fmax(under, top);
 	}
-	under = fmin(fmax(under, *ground), foot);
+	under = fmin(under, foot);
 	return foot - under < 2 * hidden * own->half[2] ? under : foot;
 }
 
 double answering_length(const struct answer_told *t, size_t object, enum question_kind kind)
 {
 	const struct box *own = box_of(t, object);
-	double ground;
-	const double foot = find_foot(t, object, &ground), height = own->centre[2] + own->half[2] - foot;
+	const double ground = find_ground(t), foot = find_foot(t, object, ground),
+		     height = level_of(own) + own->half[2] - foot;
 
 	if (kind == QUESTION_HEIGHT) /* above the table, of what stands on something else */
 		return t->asked.relation == PARSE_ABOVE && foot - ground > height / 4 ? foot - ground

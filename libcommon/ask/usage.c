@@ -77,13 +77,15 @@ static void add_parts(const struct meaning *m, double *parts)
 			parts[o] += PURPOSE_PARTS * log(fmax(m->parts[k].value[o], 1e-6));
 }
 
-/* Whether a thing is asked for by its name: one that is here, or "is there a spoon?", "how many spoons". */
+/* Whether a thing is asked for by its name: one that is here, or "is there a spoon?", "how many spoons", "which
+ * spoons are there?" */
 static int is_by_name(const struct meaning *m, int head)
 {
 	const struct parse *p = m->sentence->parse;
 	const int before = head >= 0 ? p->phrases[0].noun.item[0] - 1 : -1;
 
 	return head >= 0 && (m->known[0] >= PURPOSE_NOUN || parse_word_is(p, before, "many|any") ||
+				    (parse_word_is(p, before, "what|which") && !p->phrases[0].clauses.n) ||
 				    (head > 1 && closed_is(p->words[head - 1].text, CLOSED_DETERMINER) &&
 					    parse_word_is(p, head - 2, "there|is|'s")));
 }
