@@ -141,7 +141,9 @@ static enum answer_look is_made(const struct answer_told *t, size_t thing, int m
 enum answer_look answer_look(const struct answer_told *t, size_t thing)
 {
 	static const char is[] = " that is", made[] = " that is made ";
-	const char *said = t->asked.text[1] + strlen(t->asked.text[0]), *last = strrchr(said, ' ');
+	const size_t n = strlen(t->asked.text[0]);
+	const int is_same = !strncmp(t->asked.text[0], t->asked.text[1], n);
+	const char *said = t->asked.text[1] + (is_same ? n : 0), *last = is_same ? strrchr(said, ' ') : NULL;
 	const int is_plain = last && last == said + strlen(is);
 	const int colour = is_plain ? colour_word(last + 1) : -1;
 	const int material =

@@ -86,7 +86,7 @@ static void name_one(struct question_asked *q)
 		if (tokens_is(&t, i, "one") && tokens_class(&t, i - 1) != CLOSED_NUMBER) {
 			snprintf(text, sizeof text, "%.*s%s%s", t.word[i].span.begin, q->text[1], noun,
 				q->text[1] + t.word[i].span.end);
-			memcpy(q->text[1], text, sizeof text);
+			memcpy(q->text[1], text, strlen(text) + 1);
 			return;
 		}
 }
