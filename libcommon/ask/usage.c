@@ -77,8 +77,8 @@ static void add_parts(const struct meaning *m, double *parts)
 			parts[o] += PURPOSE_PARTS * log(fmax(m->parts[k].value[o], 1e-6));
 }
 
-/* Whether a thing is asked for by its name: one that is here, or "is there a spoon?", "how many spoons", "which
- * spoons are there?" */
+/* Whether a thing is asked for by its name: one that is here, or "is there a spoon?", "how many spoons",
+ * "which spoons are there?" */
 static int is_by_name(const struct meaning *m, int head)
 {
 	const struct parse *p = m->sentence->parse;
