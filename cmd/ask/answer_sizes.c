@@ -1,7 +1,7 @@
 /* How large a thing is. */
 #include "cmd/ask/answering.h"
 
-#include "geom/vector.h"
+#include "base/dot.h"
 
 #include <math.h>
 
@@ -16,7 +16,7 @@ static const double hidden = 0.4;
 /* How high a box's middle is: the third axis of all of them is up, wherever that is in the scene. */
 static double level_of(const struct box *b)
 {
-	return vector_dot(b->axes[2], b->centre);
+	return dot(b->axes[2], b->centre, 3);
 }
 
 static double foot_of(const struct box *b)
@@ -32,7 +32,7 @@ static double aside_of(const struct box *a, const struct box *b)
 	for (int k = 0; k < 3; k++)
 		d[k] = a->centre[k] - b->centre[k];
 	for (int k = 0; k < 2; k++)
-		along[k] = vector_dot(a->axes[k], d);
+		along[k] = dot(a->axes[k], d, 3);
 	return hypot(along[0], along[1]);
 }
 
