@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Usage: [BIN=build/bin] [BERT=DIR] tests/bench/rules.sh
-#        DATA=DIR/desk KEEP=DIR tests/bench/rules.sh questions
+#        DATA=DIR/desk ROOM=DIR/room SPLATS=room.ply KEEP=DIR tests/bench/rules.sh questions
 #
 # Leaves out each rule of language (libcommon/lang/rules.def) and prints how many parses it changes of the sentences of
 # tests/bench/said: of those that nobody read who works on the program, of later ones, and of those that were looked at; and of
