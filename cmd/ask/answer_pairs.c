@@ -191,7 +191,7 @@ static int find_most(struct answer_told *t, struct asking_answer *found, struct 
 		for (size_t i = 0; i < group.count; i++) {
 			const size_t o = group.things[i];
 			const double x = compared_by(t, o, anchor, &kind);
-			if (o == found->things[0] || o == found->things[1])
+			if (o == found->things[0] || o == found->things[1] || !a->model.extents[o].n)
 				continue;
 			found->probability[o] = group.probability[o];
 			const int less = compared_by(t, found->things[1], anchor, &kind) <
